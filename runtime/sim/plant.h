@@ -1,0 +1,81 @@
+// One simulated plant: a tree of oriented particles, and the branches (chains of particles) it is made of.
+//
+// A particle is a rigid segment with its long axis along local y. Particles and branches are stored parents first, and
+// grow by appending, so a loop upwards through the arrays meets parents before children.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "materials/bake/bake.h"
+
+namespace liana {
+
+/// Where a particle is and how it moves: the state that a hash, a snapshot or a recording covers. World frame.
+struct Motion {
+  Vec3 position = Vec3::Zero();  ///< of the centre of mass, m
+  Quat orientation = Quat::Identity();
+  Vec3 velocity = Vec3::Zero();              ///< m/s
+  Vec3 angular_velocity = Vec3::Zero();      ///< rad/s
+  Vec3 acceleration = Vec3::Zero();          ///< m/s², generalized-α's a
+  Vec3 angular_acceleration = Vec3::Zero();  ///< rad/s²
+};
+
+/// The joint that holds a particle to its parent (to the world for the first particle of a plant).
+/// Energy: U = ½ e_sᵀ C_s e_s + ½ e_bᵀ C_b e_b, with e_s, e_b in the parent's frame (x, z bend; y along the parent).
+struct Joint {
+  Vec3 on_parent = Vec3::Zero();  ///< a_p, in the parent's frame (world frame for a root), m
+  Vec3 on_self = Vec3::Zero();    ///< a_c, in the particle's frame: usually (0, -half_length, 0), m
+  Quat rest = Quat::Identity();   ///< R_rest: orientation relative to the parent's at rest
+  Vec3 shear_stiffness = Vec3::Zero();  ///< C_s = (GA, EA, GA)/h, N/m, after calibration
+  Vec3 bend_stiffness = Vec3::Zero();   ///< C_b = (EI, GJ, EI)/h, N·m/rad, after calibration
+  Vec3 rest_force = Vec3::Zero();   ///< carried at rest (weight of what hangs on it), parent's frame, N
+  Vec3 rest_moment = Vec3::Zero();  ///< the same, N·m
+};
+
+struct Particle {
+  ParticleId parent;
+  BranchId branch;
+  double half_length = 0;                ///< m, along local y
+  double half_width = 0;                 ///< m, along local x
+  double half_thickness = 0;             ///< m, along local z (the soft bending direction of a flat domain)
+  double mass = 0;                       ///< kg
+  Vec3 inertia = Vec3::Zero();           ///< principal moments about the centre, body frame, kg·m²
+  double mass_damping = 0;               ///< d_M, 1/s
+  double stiffness_damping = 0;          ///< d_K, s, of its joint
+  Joint joint;
+};
+
+/// A spring from a point of a particle to a point of the world: anchor, grab, contact. Only ever adds to the
+/// particle's own 6×6 block, so the tree stays solvable in linear time.
+struct WorldSpring {
+  ParticleId particle;
+  Vec3 on_particle = Vec3::Zero();  ///< in the particle's frame, m
+  Vec3 target = Vec3::Zero();       ///< in the world, m
+  Mat3 stiffness = Mat3::Zero();    ///< N/m, symmetric positive semi-definite, world frame
+  Mat3 damping = Mat3::Zero();      ///< N·s/m, acts on the point's velocity relative to the target's
+  Vec3 target_velocity = Vec3::Zero();  ///< m/s
+};
+
+/// A chain of particles with one material: a baked domain, a growing shoot, or a leaf.
+struct Branch {
+  BranchId parent;                      ///< invalid for a trunk
+  DomainKind kind = DomainKind::Branch;
+  int level = 0;
+  std::string group;
+  DomainId domain;                      ///< in the bake it came from; invalid for grown ones
+  std::vector<ParticleId> particles;    ///< root to tip
+  double length = 0;                    ///< ℓ, m: what the law is evaluated with
+  DomainMaterial material;              ///< target: what calibration makes it swing like
+  double stiffness_scale = 1;           ///< k*/ω₁² of the last calibration, of the physical joint stiffnesses
+};
+
+struct Plant {
+  std::string name;
+  std::vector<Motion> motion;        ///< one per particle
+  std::vector<Particle> particles;   ///< parents first
+  std::vector<Branch> branches;      ///< parents first
+  std::vector<WorldSpring> anchors;  ///< persist; contacts and grabs are given to each step anew
+};
+
+}  // namespace liana
