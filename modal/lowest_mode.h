@@ -4,15 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "mesher/base/elastic_material.h"
 #include "mesher/tets/tet_mesh.h"
 
 namespace liana {
-
-struct Elastic {
-  double youngs_modulus = 8.77e9;  ///< Pa
-  double density = 745;            ///< kg/m³
-  double poisson_ratio = 0.3;
-};
 
 /// The mass of everything that hangs on the domain at one place, lumped on the vertices nearest to it.
 struct CarriedMass {
@@ -38,7 +33,7 @@ struct Modes {
 };
 
 /// Throws Error{Input} when no face is held or the matrix is singular.
-Modes lowest_modes(const TetMesh& mesh, const Elastic& material, std::span<const CarriedMass> carried,
+Modes lowest_modes(const TetMesh& mesh, const ElasticMaterial& material, std::span<const CarriedMass> carried,
                    const ModeOptions& options = {});
 
 }  // namespace liana

@@ -8,16 +8,10 @@
 #include <map>
 #include <string>
 
+#include "mesher/base/elastic_material.h"
 #include "mesher/base/types.h"
 
 namespace liana {
-
-/// The material that the modal analysis is done with before scaling; apple wood ([Niklas 1992] in [Wang17]).
-struct ElasticMaterial {
-  double youngs_modulus = 8.77e9;  ///< Pa
-  double density = 745;            ///< kg/m³
-  double poisson_ratio = 0.3;
-};
 
 /// ξ(ν): constant below low_frequency and above high_frequency, linear between ([Wang17] Eq. 13).
 struct DampingLaw {
