@@ -1,5 +1,7 @@
 #include "runtime/growth/branching.h"
 
+#include <algorithm>
+
 namespace liana {
 
 std::vector<Bud> breaking_buds(const Shoot& shoot, int level, const Vec3& node, const Vec3& forward, const Vec3& outward,
@@ -15,7 +17,7 @@ std::vector<Bud> breaking_buds(const Shoot& shoot, int level, const Vec3& node, 
     const double angle = side * (parameters.angle + off);
     const Vec3 direction = (Eigen::AngleAxisd(angle, outward) * forward).normalized();
     if (crowding.crowded(node + 1.5 * parameters.room * direction, parameters.room, BranchId())) continue;
-    buds.push_back({direction, shoot.course + angle, shoot.tip_radius * parameters.falloff});
+    buds.push_back({direction, std::clamp(shoot.course + angle, -1.4, 1.4), shoot.tip_radius * parameters.falloff});
   }
   return buds;
 }

@@ -8,6 +8,7 @@
 #include "runtime/growth/anchors.h"
 #include "runtime/growth/crowding.h"
 #include "runtime/growth/leaves.h"
+#include "runtime/growth/segments.h"
 #include "runtime/growth/shoot_growth.h"
 #include "runtime/sim/calibration.h"
 
@@ -45,7 +46,6 @@ class Climber {
   ParticleId append_stem(Plant& plant, const Shoot& shoot, const Attachment& at, const Quat& orientation);
   void finish_node(Plant& plant, size_t shoot, const Surroundings& around);
   void hold_on_again(Plant& plant, const Surroundings& around);
-  void weigh_tips(Plant& plant);
   void recalibrate_changed(Plant& plant, GrowthReport& report);
 
   ClimberParameters parameters_;

@@ -5,6 +5,7 @@
 
 #include "runtime/growth/segments.h"
 #include "runtime/growth/tropisms.h"
+#include "runtime/sim/rod_section.h"
 
 namespace liana {
 namespace {
@@ -49,9 +50,10 @@ BranchId Leaves::sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3&
   const Attachment at{node, Vec3(0, plant.particles[node.index()].half_length, 0)};
   const ParticleId blade = append_segment(plant, leaf.branch, at, shape, leaf_frame(midrib, outward));
 
-  const RodStiffness rod = rod_stiffness(law.default_material, p.petiole_radius, p.petiole, 1);
-  plant.particles[blade.index()].joint.shear_stiffness = rod.shear;
-  plant.particles[blade.index()].joint.bend_stiffness = rod.bend;
+  const ElasticMaterial& material = law.default_material;
+  set_section(plant.particles[blade.index()].joint,
+              rod_section(material.youngs_modulus, material.poisson_ratio, p.petiole_radius, p.petiole_radius, 1),
+              p.petiole);
   leaves_.push_back(leaf);
   resize(plant, leaf, kYoungest, law);
   return leaf.branch;

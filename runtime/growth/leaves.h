@@ -14,7 +14,7 @@ class Leaves {
   /// A young leaf at the head of a shoot's full-grown particle. `outward` is the direction away from the support.
   BranchId sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3& outward, const SpeciesLaw& law, Random& random);
 
-  /// Enlarges and turns the leaves that are not full-grown. Those changed are appended to `changed`.
+  /// Enlarges and turns the leaves that are not full-grown.
   void grow(Plant& plant, const Vec3& to_sun, double dt, const SpeciesLaw& law);
 
   size_t count() const { return leaves_.size(); }

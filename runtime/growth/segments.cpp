@@ -1,5 +1,7 @@
 #include "runtime/growth/segments.h"
 
+#include "runtime/sim/rod_section.h"
+
 namespace liana {
 
 ParticleId append_segment(Plant& plant, BranchId branch, const Attachment& at, const SegmentShape& shape,
@@ -73,14 +75,7 @@ void set_mass(Particle& particle, DomainKind kind, double density) {
   const double a = particle.half_width, b = particle.half_length, c = particle.half_thickness;
   const double volume = kind == DomainKind::Leaf ? 0.5 * 8 * a * b * c : 2 * kPi * a * b * c;
   particle.mass = density * volume;
-  // A cylinder of elliptical section; a blade is taken as one too.
-  particle.inertia = particle.mass * Vec3(b * b / 3 + c * c / 4, (a * a + c * c) / 4, b * b / 3 + a * a / 4);
-}
-
-RodStiffness rod_stiffness(const ElasticMaterial& material, double radius, double length, double scale) {
-  const double E = material.youngs_modulus, G = E / (2 * (1 + material.poisson_ratio));
-  const double A = kPi * radius * radius, I = A * radius * radius / 4, J = 2 * I;
-  return {scale / length * Vec3(G * A, E * A, G * A), scale / length * Vec3(E * I, G * J, E * I)};
+  particle.inertia = rod_inertia(particle.mass, b, a, c);
 }
 
 }  // namespace liana

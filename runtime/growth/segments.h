@@ -31,14 +31,7 @@ void turn_segment(Plant& plant, ParticleId particle, const Quat& world_rotation)
 /// Apical growth: the head moves forward by `by` metres, the tail stays.
 void lengthen_segment(Plant& plant, ParticleId particle, double by);
 
-/// Mass (a round stem is a cylinder, a blade half its bounding box) and inertia for a density, kg/m³.
+/// Mass (a stem is a cylinder, a blade half its bounding box) and inertia for a density, kg/m³.
 void set_mass(Particle& particle, DomainKind kind, double density);
-
-/// Physical stiffness of the joint of a round rod times `scale`: C_s = (GA, EA, GA)/h, C_b = (EI, GJ, EI)/h. It is set
-/// when a particle is made, for its full length, so that lengthening does not change it.
-struct RodStiffness {
-  Vec3 shear, bend;
-};
-RodStiffness rod_stiffness(const ElasticMaterial& material, double radius, double length, double scale);
 
 }  // namespace liana

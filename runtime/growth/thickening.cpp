@@ -5,6 +5,7 @@
 
 #include "runtime/growth/segments.h"
 #include "runtime/sim/calibration.h"
+#include "runtime/sim/rod_section.h"
 
 namespace liana {
 
@@ -35,8 +36,9 @@ void thicken(Plant& plant, const std::vector<double>& young_radius, const std::v
     const Branch& branch = plant.branches[particle.branch.index()];
     particle.half_width = particle.half_thickness = radius;
     set_mass(particle, DomainKind::Branch, material.density * branch.material.mass_scaling);
-    const RodStiffness rod = rod_stiffness(material, radius, joint_length[i], branch.stiffness_scale);
-    set_stiffness(plant, ParticleId(i), rod.shear, rod.bend);
+    const RodSection section = rod_section(material.youngs_modulus, material.poisson_ratio, radius, radius, 1);
+    const double scale = branch.stiffness_scale / joint_length[i];
+    set_stiffness(plant, ParticleId(i), scale * section.shear, scale * section.bend);
   }
 }
 
