@@ -1,5 +1,6 @@
 #include "materials/law/damping.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace liana {
@@ -21,8 +22,10 @@ double damping_factor(const DampingLaw& law, double frequency) {
 RayleighDamping rayleigh_damping(const DampingLaw& law, double nu, double xi) {
   const double kappa = law.kappa, delta = law.delta;
   const double divisor = kappa * kappa - 1;
-  return {.mass = 4 * kPi * nu * (kappa * kappa - kappa * delta) / divisor * xi,
-          .stiffness = (kappa * delta - 1) / (kPi * divisor * nu) * xi};
+  const double mass = 4 * kPi * nu * (kappa * kappa - kappa * delta) / divisor * xi;
+  const double stiffness = (kappa * delta - 1) / (kPi * divisor * nu) * xi;
+  // At the bounds of delta one of them is 0 but for rounding, which must not pump energy in.
+  return {std::max(mass, 0.0), std::max(stiffness, 0.0)};
 }
 
 double least_damped_frequency(const DampingLaw& law, double nu) {

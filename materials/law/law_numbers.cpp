@@ -7,9 +7,12 @@
 namespace liana {
 namespace {
 
+constexpr const char* kHint = "correct it in the species file, and bake again";
+
 void check_number(const NumberRange& range, double value, const std::string& where) {
   const std::string problem = range_problem(range, value);
-  if (!problem.empty()) throw Error(Error::Kind::Input, fmt::format("{}: {} {}", where, range.key, problem));
+  if (!problem.empty())
+    throw Error(Error::Kind::Input, fmt::format("{}: {} {}", where, range.key, problem), kHint);
 }
 
 }  // namespace
@@ -38,7 +41,7 @@ void check(const GroupLaw& law, const std::string& where) {
   for_each_number_of_group(law, in_range);
   for_each_number_of_damping(law.damping, in_range);
   const std::string problem = damping_problem(law.damping);
-  if (!problem.empty()) throw Error(Error::Kind::Input, where + ": " + problem);
+  if (!problem.empty()) throw Error(Error::Kind::Input, where + ": " + problem, kHint);
 }
 
 void check(const SpeciesLaw& law, const std::string& where) {
