@@ -1,0 +1,49 @@
+// The joint between a particle and its parent: strains, their rates, and the wrench they make.
+//
+// Symbols, with F = R_p R_rest the joint's frame, P the child's anchor point, r_c and r_p the levers to P
+// from the centres of child and parent:
+//   e_s = Fᵀ [(x_c + R_c a_c) − (x_p + R_p a_p)]     shear, stretch, shear (m)
+//   e_b = log(Fᵀ R_c)                                bend, twist, bend (rad)
+//   de_s/dt = Fᵀ (velocity of the child's P − velocity of P as a point of the parent)
+//   de_b/dt = B Fᵀ (ω_c − ω_p),  B = rate of the rotation vector
+// The wrench on the child at P is −(C e + d_K C de/dt − rest load), the parent feels the opposite at the same
+// point: linear and angular momentum are conserved exactly. The stiffness is Gauss-Newton's Jᵀ C J.
+#pragma once
+
+#include "runtime/sim/plant.h"
+#include "runtime/sim/rotation.h"
+
+namespace liana {
+
+/// Where a rigid body is and how it moves at the moment when a joint is looked at. World frame.
+struct BodyPose {
+  Vec3 position = Vec3::Zero();
+  Quat orientation = Quat::Identity();
+  Vec3 velocity = Vec3::Zero();
+  Vec3 angular_velocity = Vec3::Zero();
+};
+
+struct JointStrain {
+  Mat3 frame;                    ///< F
+  Vec3 from_child, from_parent;  ///< r_c, r_p, world, m
+  Vec3 shear;                    ///< e_s
+  RotationLog bend;              ///< e_b is bend.vector
+};
+
+/// e of a joint; `parent` is the identity body at rest for a root.
+JointStrain joint_strain(const Joint& joint, const BodyPose& parent, const BodyPose& child);
+
+/// The joint seen by a linear solve: F C_s Fᵀ and F Bᵀ C_b B Fᵀ, and what it exerts on the child at P. World
+/// frame.
+struct JointAction {
+  Mat3 shear, bend;    ///< N/m, N·m/rad
+  Vec3 force, moment;  ///< N, N·m
+};
+JointAction joint_action(const Joint& joint, double stiffness_damping, const JointStrain& strain,
+                         const BodyPose& parent, const BodyPose& child);
+
+/// Distance between the joint's two anchor points, m.
+double joint_gap(const Joint& joint, const Vec3& parent_position, const Quat& parent_orientation,
+                 const Vec3& child_position, const Quat& child_orientation);
+
+}  // namespace liana

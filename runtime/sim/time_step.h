@@ -1,0 +1,67 @@
+// One step of one plant: generalized-α, one linearised solve over the tree, and a net under it.
+//
+// Symbols: h substep (s); ρ∞ spectral radius at infinite frequency; gap distance between the two anchor
+// points of a joint, over the length of the particle. A step whose gap exceeds the limit is thrown away and
+// redone from the same start with 2, 4, … 32 times as many substeps at ρ∞ = 0.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "runtime/sim/joints.h"
+#include "runtime/sim/plant.h"
+#include "runtime/sim/tree_solver.h"
+
+namespace liana {
+
+/// What acts on one particle from outside, at its centre of mass. World frame.
+struct Wrench {
+  Vec3 force = Vec3::Zero();   ///< N
+  Vec3 torque = Vec3::Zero();  ///< N·m
+};
+
+struct StepOptions {
+  double dt = 0.025;             ///< s; frequencies are as baked only when it equals plant.scheme.dt
+  Vec3 gravity = {0, -9.81, 0};  ///< m/s²
+  double gap_limit = 0.02;       ///< of the particle's length; above it the step is redone
+  int most_redo_substeps = 32;   ///< per substep of the scheme; 1 switches redoing off
+};
+
+struct StepReport {
+  int solves = 0;          ///< linear solves spent, redone ones included
+  int redone = 0;          ///< 0 in normal motion: how often this step was started again
+  double gap = 0;          ///< largest joint gap of the accepted step, over the particle's length
+  bool gap_held = true;    ///< false when even the finest redo ended above the limit (accepted all the same)
+  bool finite = true;      ///< false when no redo stayed finite: positions kept, velocities cleared
+  bool calibrated = true;  ///< false when dt is not the one that the plant was calibrated for
+};
+
+/// Steps one plant. Owns the working memory: keep one per plant. Steps allocate nothing unless particles were
+/// added since the last one. Deterministic; the same on every thread.
+class PlantStepper {
+ public:
+  /// external: one Wrench per particle, or empty. transient: contacts and grabs of this step, added to
+  /// plant.anchors.
+  StepReport step(Plant& plant, std::span<const Wrench> external, std::span<const WorldSpring> transient,
+                  const StepOptions& options) noexcept;
+
+  /// Makes room for the plant's particles; step() does so itself when their number changed.
+  void reserve(size_t particles);
+
+ private:
+  struct Substep;  // the numbers and loads that one substep is taken with
+
+  bool substep(const Plant& plant, const Substep& step, const std::vector<Motion>& from,
+               std::vector<Motion>& to, double& gap) noexcept;
+  void predict(const Plant& plant, const Substep& step, const std::vector<Motion>& from) noexcept;
+  void add_springs(std::span<const WorldSpring> springs, const Substep& step) noexcept;
+  void eliminate(const Plant& plant, const Substep& step) noexcept;
+  bool advance(const Plant& plant, const Substep& step, const std::vector<Motion>& from,
+               std::vector<Motion>& to, double& gap) noexcept;
+
+  TreeSolver solver_;
+  std::vector<BodyPose> pose_;      // at the moment where forces are balanced, between two substeps
+  std::vector<Motion> now_, next_;  // the plant's own state stays untouched until a step is accepted
+};
+
+}  // namespace liana
