@@ -1,0 +1,54 @@
+// Contacts of a plant with solid obstacles and the ground, as springs to the world for the next time step.
+//
+// Every particle is looked at in its centre and its head (its tail is its parent's head), with the
+// cross-section's own reach towards the surface as radius. A contact is made when the point is inside, or
+// will be by the end of the step.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "runtime/sim/collision/sdf_obstacle.h"
+#include "runtime/sim/plant.h"
+
+namespace liana {
+
+struct CollisionScene {
+  std::span<const SdfObstacle* const> solids;
+  std::optional<double> ground_height;  ///< m; the ground is a horizontal plane
+};
+
+struct ContactOptions {
+  double friction = 0.6;          ///< Coulomb's coefficient
+  double creep_speed = 2e-3;      ///< m/s, below which friction is viscous
+  double stiffness_ratio = 1000;  ///< normal stiffness over m/Δt²
+  double least_stiffness = 5e3;   ///< N/m
+  double push_out_speed = 1.0;    ///< m/s, at which what is deep inside is moved out
+};
+
+struct ContactReport {
+  size_t contacts = 0;         ///< springs made
+  size_t exempt = 0;           ///< particles at a plant's base that were inside when first seen
+  double max_penetration = 0;  ///< m, of the state looked at, without exempt particles
+};
+
+/// One per plant: it remembers which particles were made inside something.
+class Contacts {
+ public:
+  explicit Contacts(const ContactOptions& options = {}) : options_(options) {}
+
+  /// Appends the contact springs for the next step of the plant's time scheme, from its present state.
+  ContactReport gather(const Plant& plant, const CollisionScene& scene, std::vector<WorldSpring>& springs);
+
+  /// Only looks: the report of the present state, with no springs.
+  ContactReport measure(const Plant& plant, const CollisionScene& scene);
+
+ private:
+  void notice_new_particles(const Plant& plant, const CollisionScene& scene);
+
+  ContactOptions options_;
+  std::vector<uint8_t> exempt_;  // per particle
+};
+
+}  // namespace liana

@@ -1,0 +1,165 @@
+#include "runtime/sim/collision/sdf_obstacle.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesher/base/error.h"
+#include "mesher/base/parallel.h"
+
+namespace liana {
+namespace {
+
+/// Trilinear value and gradient (per voxel) inside a cell; f[x + 2y + 4z] at its corners, t in [0, 1]³.
+double interpolate(const double (&f)[8], const Vec3& t, Vec3& gradient) {
+  double along_x[4], step_x[4];
+  for (int i = 0; i < 4; ++i) step_x[i] = f[2 * i + 1] - f[2 * i], along_x[i] = f[2 * i] + t.x() * step_x[i];
+  const double near = along_x[0] + t.y() * (along_x[1] - along_x[0]);
+  const double far = along_x[2] + t.y() * (along_x[3] - along_x[2]);
+  const double x_near = step_x[0] + t.y() * (step_x[1] - step_x[0]);
+  const double x_far = step_x[2] + t.y() * (step_x[3] - step_x[2]);
+  const double y_near = along_x[1] - along_x[0], y_far = along_x[3] - along_x[2];
+  gradient = {x_near + t.z() * (x_far - x_near), y_near + t.z() * (y_far - y_near), far - near};
+  return near + t.z() * (far - near);
+}
+
+Vec3 gradient_at(const SurfacePoint& closest, const Vec3& x) {
+  const Vec3 away = x - closest.point;
+  // On the surface itself the direction is lost in rounding.
+  if (std::abs(closest.distance) < 1e-9) return closest.normal;
+  return away / closest.distance;
+}
+
+}  // namespace
+
+SdfObstacle::SdfObstacle(const Mesh& mesh, const SdfOptions& options) : surface_(mesh) {
+  low_ = high_ = surface_.mesh().positions.front();
+  for (const Vec3& p : surface_.mesh().positions) low_ = low_.cwiseMin(p), high_ = high_.cwiseMax(p);
+  voxel_ = options.voxel > 0 ? options.voxel : std::max(2e-3, (high_ - low_).maxCoeff() / 128);
+  band_ = options.band > 0 ? options.band : std::max(4e-2, 3 * voxel_);
+
+  const double brick = kCells * voxel_;
+  const Vec3 extent = high_ - low_ + Vec3::Constant(2 * (band_ + voxel_));
+  const Vec3 count = (extent / brick).array().ceil();
+  if (!(count.prod() < 1e7))
+    throw Error(Error::Kind::Input,
+                fmt::format("a voxel of {} m is too fine for an obstacle of {:.1f} m", voxel_,
+                            (high_ - low_).maxCoeff()),
+                "choose a larger voxel");
+  bricks_ = count.cast<int>();
+  origin_ = (low_ + high_) / 2 - count * (brick / 2);
+
+  brick_index_.assign(bricks_.prod(), -1);
+  centre_value_.resize(brick_index_.size());
+  const auto place = [&](size_t i) {
+    const int x = static_cast<int>(i % bricks_.x()), rest = static_cast<int>(i / bricks_.x());
+    return Eigen::Vector3i(x, rest % bricks_.y(), rest / bricks_.y());
+  };
+  parallel_for(
+      brick_index_.size(), options.threads,
+      [&](size_t i, unsigned) {
+        centre_value_[i] = static_cast<float>(surface_.closest(brick_centre(place(i))).distance);
+      },
+      64);
+
+  const double reach = brick * std::sqrt(3.0) / 2 + band_;  // beyond it no point of the brick is in the band
+  std::vector<size_t> near;
+  for (size_t i = 0; i < brick_index_.size(); ++i)
+    if (std::abs(centre_value_[i]) <= reach * (1 + 1e-6)) brick_index_[i] = near.size(), near.push_back(i);
+  if (near.size() * kSamples > options.max_samples)
+    throw Error(Error::Kind::Input,
+                fmt::format("a voxel of {} m needs {} samples, more than {}", voxel_, near.size() * kSamples,
+                            options.max_samples),
+                "choose a larger voxel");
+  filled_.resize(near.size());
+  parallel_for(
+      near.size(), options.threads, [&](size_t i, unsigned) { fill(filled_[i], place(near[i])); }, 4);
+}
+
+Vec3 SdfObstacle::brick_centre(const Eigen::Vector3i& b) const {
+  return origin_ + (b.cast<double>() + Vec3::Constant(0.5)) * (kCells * voxel_);
+}
+
+void SdfObstacle::fill(Brick& brick, const Eigen::Vector3i& at) const {
+  const Vec3 corner = origin_ + at.cast<double>() * (kCells * voxel_);
+  std::vector<Vec3> gradients(kSamples);
+  double within = std::numeric_limits<double>::infinity();
+  for (int z = 0, i = 0; z < kSide; ++z)
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x, ++i) {
+        const Vec3 p = corner + Vec3(x, y, z) * voxel_;
+        if (x == 0) within = std::numeric_limits<double>::infinity();  // else: one voxel from the last sample
+        const SurfacePoint found = surface_.closest(p, within);
+        within = std::abs(found.distance) + voxel_;
+        brick.values[i] = static_cast<float>(found.distance);
+        gradients[i] = gradient_at(found, p);
+      }
+  mark_bent(brick, corner, gradients);
+}
+
+// A field whose gradient turns by less than `turn` within a cell is off its trilinear interpolant by less
+// than turn * voxel; where the surface passes, the centre is looked at as well, for what is smaller than a
+// voxel.
+void SdfObstacle::mark_bent(Brick& brick, const Vec3& corner, const std::vector<Vec3>& gradients) const {
+  const double turn = 0.05;
+  for (int z = 0; z < kCells; ++z)
+    for (int y = 0; y < kCells; ++y)
+      for (int x = 0; x < kCells; ++x) {
+        const int first = x + kSide * (y + kSide * z);
+        double mean = 0, nearest = std::numeric_limits<double>::infinity();
+        bool bent = false;
+        for (int c = 0; c < 8; ++c) {
+          const int i = first + (c & 1) + kSide * ((c >> 1 & 1) + kSide * (c >> 2));
+          mean += brick.values[i] / 8;
+          nearest = std::min<double>(nearest, std::abs(brick.values[i]));
+          bent |= (gradients[i] - gradients[first]).squaredNorm() > turn * turn;
+        }
+        if (!bent && nearest < voxel_) {
+          const Vec3 centre = corner + (Vec3(x, y, z) + Vec3::Constant(0.5)) * voxel_;
+          bent = std::abs(surface_.closest(centre, nearest + 2 * voxel_).distance - mean) > turn * voxel_;
+        }
+        if (bent) brick.bent[z * kCells + y] |= uint8_t(1) << x;
+      }
+}
+
+SdfSample SdfObstacle::sample(const Vec3& x) const {
+  const Vec3 place = (x - origin_) / voxel_;
+  const Vec3 top = (bricks_ * kCells).cast<double>();
+  if ((place.array() < 0).any() || (place.array() >= top.array()).any() || !x.allFinite()) {
+    return {(x - x.cwiseMax(low_).cwiseMin(high_)).norm(), Vec3::Zero()};
+  }
+  const Eigen::Vector3i cell = place.cast<int>(), b = cell / kCells, in = cell - b * kCells;
+  const size_t at = b.x() + size_t(bricks_.x()) * (b.y() + size_t(bricks_.y()) * b.z());
+  if (brick_index_[at] < 0) {
+    const Vec3 away = x - brick_centre(b);
+    const double centre = centre_value_[at];
+    // The distance changes by no more than the way from the centre.
+    const double bound = std::max(band_, std::abs(centre) - away.norm());
+    return {std::copysign(bound, centre), Vec3::Zero()};
+  }
+  const Brick& brick = filled_[brick_index_[at]];
+  if (brick.bent[in.z() * kCells + in.y()] >> in.x() & 1) {
+    const SurfacePoint exact = surface_.closest(x);
+    return {exact.distance, gradient_at(exact, x)};
+  }
+  const float* first = &brick.values[in.x() + kSide * (in.y() + kSide * in.z())];
+  const double corners[8] = {first[0],
+                             first[1],
+                             first[kSide],
+                             first[kSide + 1],
+                             first[kSide * kSide],
+                             first[kSide * kSide + 1],
+                             first[kSide * kSide + kSide],
+                             first[kSide * kSide + kSide + 1]};
+  SdfSample result;
+  result.distance = interpolate(corners, place - cell.cast<double>(), result.gradient);
+  result.gradient.normalize();
+  return result;
+}
+
+size_t SdfObstacle::bytes() const {
+  return filled_.size() * sizeof(Brick) + brick_index_.size() * (sizeof(int32_t) + sizeof(float));
+}
+
+}  // namespace liana

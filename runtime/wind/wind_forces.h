@@ -1,0 +1,31 @@
+// The drag of moving air on a plant's particles, as dashpots to the air for the next time step.
+#pragma once
+
+#include <vector>
+
+#include "runtime/sim/plant.h"
+#include "runtime/wind/wind_field.h"
+
+namespace liana {
+
+struct DragOptions {
+  double air_density = 1.2;       ///< kg/m³
+  double stem_coefficient = 1.1;  ///< C_d of a cylinder across the flow
+  double leaf_coefficient = 0.6;  ///< C_d of a flexible blade
+  double leaf_yield_speed = 4;    ///< m/s, above which blades fold and their drag grows only linearly (Vogel)
+};
+
+/// Area (m²) of an ellipsoid's shadow along the unit direction u: π √((bc u_x)² + (ac u_y)² + (ab u_z)²),
+/// [Haedrich17]'s particle shape; both in the particle's frame.
+double projected_area(const Particle& particle, const Vec3& u);
+
+/// Appends one dashpot per particle: F = ½ ρ C_d A |u| (wind - velocity). Linear in the velocity at the end
+/// of the step, so the implicit step can never be driven past the wind's own speed, however light the leaf.
+///
+/// F is the physical force. [Wang17] Eq. 3 divides external forces by α_m; here the particles' masses already
+/// hold α_m, so the acceleration F/(α_m m) is scaled by 1/α_m by itself: no factor here. Gravity scales with
+/// the mass.
+void add_wind(const Plant& plant, const WindField& wind, double time, const DragOptions& options,
+              std::vector<WorldSpring>& springs);
+
+}  // namespace liana
