@@ -39,7 +39,7 @@ struct Joint {
 struct Particle {
   ParticleId parent;
   BranchId branch;
-  double half_length = 0;        ///< m, along local y
+  double half_length = 0;        ///< m, along local y; > 0
   double half_width = 0;         ///< m, along local x
   double half_thickness = 0;     ///< m, along local z (the soft bending direction of a flat domain)
   double mass = 0;               ///< kg
