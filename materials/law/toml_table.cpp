@@ -42,6 +42,10 @@ bool TomlTable::has(const std::string& key) const {
   return node_->table->contains(key);
 }
 
+bool TomlTable::is_table(const std::string& key) const {
+  return has(key) && node_->table->get(key)->is_table();
+}
+
 double TomlTable::number(const std::string& key, double least, double most) const {
   if (!has(key)) fail(key, "is missing");
   const auto value = node_->table->get(key)->value<double>();

@@ -18,6 +18,7 @@ class TomlTable {
   static TomlTable read(const std::filesystem::path& path);
 
   bool has(const std::string& key) const;
+  bool is_table(const std::string& key) const;  ///< present and a table
   double number(const std::string& key, double least, double most) const;
   double number_or(const std::string& key, double fallback, double least, double most) const;
   int64_t integer_or(const std::string& key, int64_t fallback, int64_t least, int64_t most) const;

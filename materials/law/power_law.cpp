@@ -1,0 +1,69 @@
+#include "materials/law/power_law.h"
+
+#include <fmt/core.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "materials/law/damping.h"
+#include "materials/law/law_numbers.h"
+#include "mesher/base/error.h"
+
+namespace liana {
+namespace {
+
+/// N of "level<N>", or -1.
+int level_of(const std::string& name) {
+  constexpr std::string_view kPrefix = "level";
+  if (!name.starts_with(kPrefix)) return -1;
+  int level = -1;
+  const char* end = name.data() + name.size();
+  const auto [rest, code] = std::from_chars(name.data() + kPrefix.size(), end, level);
+  return code == std::errc() && rest == end ? level : -1;
+}
+
+}  // namespace
+
+double frequency_of_length(const GroupLaw& law, double length) {
+  return law.reference_frequency * std::pow(length / law.reference_length, law.epsilon1);
+}
+
+double mass_scaling_of_length(const GroupLaw& law, double length) {
+  return law.c2 * std::pow(length, law.epsilon2);
+}
+
+double stiffness_scaling(double mass_scaling, double frequency, double default_frequency) {
+  const double ratio = frequency / default_frequency;
+  return mass_scaling * ratio * ratio;
+}
+
+double taper_scaling(const TaperLaw& law, double fraction) {
+  const double t = std::pow(1 - fraction, law.epsilon3);
+  return (1 - t) * law.tip_scaling + t * law.root_scaling;
+}
+
+DomainMaterial evaluate(const GroupLaw& law, double length) {
+  if (!(length > 0 && std::isfinite(length)))
+    throw Error(Error::Kind::Input, fmt::format("a length of {} m has no material", length),
+                "the power law needs a positive length");
+  check(law, "the power law");
+  const double frequency = frequency_of_length(law, length);
+  const double factor = damping_factor(law.damping, frequency);
+  const RayleighDamping rayleigh = rayleigh_damping(law.damping, frequency, factor);
+  return {frequency, mass_scaling_of_length(law, length), factor, rayleigh.mass, rayleigh.stiffness};
+}
+
+const GroupLaw& SpeciesLaw::group(const std::string& name) const {
+  if (const auto found = groups.find(name); found != groups.end()) return found->second;
+  for (int level = level_of(name) - 1; level >= 0; --level) {
+    const auto found = groups.find("level" + std::to_string(level));
+    if (found != groups.end()) return found->second;
+  }
+  std::string known;
+  for (const auto& [key, law] : groups) known += (known.empty() ? "" : ", ") + key;
+  throw Error(
+      Error::Kind::Input, fmt::format("species '{}' has no material group '{}'", species, name),
+      fmt::format("it has: {}; add [groups.{}] to its file or change the group in the plant", known, name));
+}
+
+}  // namespace liana

@@ -1,0 +1,25 @@
+// Files as tinygltf models, and their meshes, with the checks that tinygltf leaves out: it accepts accessors
+// beyond their buffer, ids of nothing and URIs that leave the folder.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "mesher/base/mesh.h"
+
+namespace tinygltf {
+class Model;
+}
+
+namespace liana {
+
+/// Loads .glb or .gltf (told apart by content) with its buffers; images are not decoded. Returns the hash of
+/// all bytes. Throws Error{Input} naming the file.
+uint64_t load_gltf(const std::filesystem::path& path, tinygltf::Model& model);
+
+/// All triangles of a mesh, as stored (not welded). `where` names file and node in messages.
+/// Throws Error{Input} for anything but finite float positions and triangles with valid indices.
+Mesh gltf_mesh(const tinygltf::Model& model, int mesh, const std::string& where);
+
+}  // namespace liana

@@ -1,0 +1,123 @@
+#include "runtime/scene/scene_file.h"
+
+#include <fmt/core.h>
+
+#include "materials/law/toml_table.h"
+#include "mesher/base/box_mesh.h"
+#include "mesher/base/error.h"
+#include "mesher/io/plant_file.h"
+
+namespace liana {
+namespace {
+
+constexpr double kFar = 1e4;  // m: nothing in a scene is farther from the origin or larger
+
+std::filesystem::path existing_file(const TomlTable& table, const std::string& key) {
+  const std::filesystem::path path = table.file().parent_path() / table.text(key);
+  if (!std::filesystem::is_regular_file(path)) {
+    const bool bake = path.extension() == ".bake";
+    table.fail(key, fmt::format("names {}, which does not exist", path.string()),
+               bake ? "make it with: liana bake PLANT.glb --species NAME -o " + path.string()
+                    : "paths are relative to the scene file");
+  }
+  return path;
+}
+
+/// Any glTF file, all its meshes as one.
+Mesh read_obstacle_mesh(const std::filesystem::path& path) {
+  Mesh all;
+  for (const Domain& part : read_plant(path).domains) {
+    const auto first = static_cast<uint32_t>(all.positions.size());
+    all.positions.insert(all.positions.end(), part.surface.positions.begin(), part.surface.positions.end());
+    for (const Triangle& t : part.surface.triangles)
+      all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  return all;
+}
+
+SceneObstacle read_obstacle(const TomlTable& table) {
+  SceneObstacle obstacle;
+  obstacle.name = table.text_or("name", "obstacle");
+  obstacle.color = table.vector_or("color", {0.55, 0.5, 0.45});
+  const std::string look = table.text_or("look", "plain");
+  if (look != "plain" && look != "bricks") table.fail("look", "must be \"plain\" or \"bricks\"");
+  obstacle.bricks = look == "bricks";
+
+  if (const auto box = table.table("box")) {
+    const Vec3 centre = box->vector("center"), size = box->vector("size");
+    if (!(size.minCoeff() >= 1e-3 && size.maxCoeff() <= kFar))
+      box->fail("size", fmt::format("must lie between 0.001 and {} m in every direction", kFar));
+    box->refuse_unknown_keys();
+    obstacle.mesh = box_mesh(centre, size);
+  } else if (table.has("mesh")) {
+    obstacle.mesh = read_obstacle_mesh(existing_file(table, "mesh"));
+    const Vec3 position = table.vector_or("position", Vec3::Zero());
+    for (Vec3& p : obstacle.mesh.positions) p += position;
+  } else {
+    table.fail("box", "or 'mesh' is needed to give the obstacle a shape",
+               "box = { center = [0, 1.5, -0.1], size = [4, 3, 0.2] }");
+  }
+  table.refuse_unknown_keys();
+  return obstacle;
+}
+
+ScenePlant read_plant_entry(const TomlTable& table) {
+  ScenePlant plant{existing_file(table, "bake"), table.vector_or("position", Vec3::Zero()),
+                   table.number_or("yaw", 0, -360, 360) * kPi / 180};
+  table.refuse_unknown_keys();
+  return plant;
+}
+
+SceneClimber read_climber(const TomlTable& table) {
+  SceneClimber climber;
+  if (table.has("bake"))
+    climber.bake = existing_file(table, "bake");
+  else
+    climber.species = table.text_or("species", "ivy");
+  climber.position = table.vector("position");
+  climber.growth_speed = table.number_or("growth_speed", 1, 0, 20);
+  table.refuse_unknown_keys();
+  return climber;
+}
+
+}  // namespace
+
+Scene read_scene(const std::filesystem::path& path) {
+  const TomlTable table = TomlTable::read(path);
+  Scene scene;
+  scene.file = path;
+  scene.title = table.text_or("title", path.stem().string());
+  scene.seed = static_cast<uint64_t>(table.integer_or("seed", 1, 0, int64_t{1} << 53));
+  scene.time_step = table.number_or("time_step", scene.time_step, 1e-4, 0.1);
+  scene.seconds = table.number_or("seconds", scene.seconds, 0, 86400);
+  scene.gravity = table.vector_or("gravity", scene.gravity);
+  if (const auto sun = table.table("sun")) {
+    scene.to_sun = sun->vector("direction");
+    if (scene.to_sun.norm() < 1e-9) sun->fail("direction", "must not be zero");
+    sun->refuse_unknown_keys();
+  }
+  if (const auto wind = table.table("wind")) {
+    scene.wind.velocity = wind->vector("velocity");
+    scene.wind.gust = wind->number_or("gust", scene.wind.gust, 0, 3);
+    scene.wind.gust_length = wind->number_or("gust_length", scene.wind.gust_length, 0.1, kFar);
+    if (scene.wind.velocity.norm() > 100) wind->fail("velocity", "is above 100 m/s, which no plant meets");
+    wind->refuse_unknown_keys();
+  }
+  if (const auto camera = table.table("camera")) {
+    scene.camera = SceneCamera{camera->vector("eye"), camera->vector("target"),
+                               camera->number_or("vertical_angle", 40, 5, 120) * kPi / 180};
+    if ((scene.camera->eye - scene.camera->target).norm() < 1e-6)
+      camera->fail("eye", "and 'target' must not coincide");
+    camera->refuse_unknown_keys();
+  }
+  for (const TomlTable& entry : table.tables("obstacle")) scene.obstacles.push_back(read_obstacle(entry));
+  for (const TomlTable& entry : table.tables("plant")) scene.plants.push_back(read_plant_entry(entry));
+  for (const TomlTable& entry : table.tables("climber")) scene.climbers.push_back(read_climber(entry));
+  table.refuse_unknown_keys();
+  if (scene.plants.empty() && scene.climbers.empty())
+    throw Error(Error::Kind::Input, path.string() + ": the scene has no [[plant]] and no [[climber]]",
+                "add for example: [[climber]] species = \"ivy\" position = [0, 0, 0.05]");
+  return scene;
+}
+
+}  // namespace liana

@@ -1,0 +1,64 @@
+// A scene as a TOML file: obstacles, baked plants, climbers, sun, wind and camera.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesher/base/mesh.h"
+
+namespace liana {
+
+struct SceneObstacle {
+  std::string name;
+  Mesh mesh;  ///< world frame, m
+  Vec3 color;
+  bool bricks;
+};
+
+/// A plant from a bake, standing at a place.
+struct ScenePlant {
+  std::filesystem::path bake;
+  Vec3 position;
+  double yaw;  ///< rad, about +Y
+};
+
+/// A climber that grows from a seed, with the law of a bake or of a species preset.
+struct SceneClimber {
+  std::filesystem::path bake;  ///< empty when a species is named
+  std::string species;
+  Vec3 position;
+  double growth_speed;  ///< multiple of the climber's normal pace
+};
+
+struct SceneWind {
+  Vec3 velocity = Vec3::Zero();  ///< mean, m/s
+  double gust = 0.5;             ///< standard deviation of the speed over its mean
+  double gust_length = 6;        ///< m, how far apart gusts are
+};
+
+struct SceneCamera {
+  Vec3 eye, target;
+  double vertical_angle;  ///< rad, field of view
+};
+
+struct Scene {
+  std::filesystem::path file;
+  std::string title;
+  uint64_t seed = 1;
+  double time_step = 0.025;  ///< s
+  double seconds = 60;       ///< how long `simulate` runs unless told otherwise
+  Vec3 gravity = {0, -9.81, 0};
+  Vec3 to_sun = {0.4, 0.8, 0.45};
+  SceneWind wind;
+  std::vector<SceneObstacle> obstacles;
+  std::vector<ScenePlant> plants;
+  std::vector<SceneClimber> climbers;
+  std::optional<SceneCamera> camera;  ///< absent: frame everything
+};
+
+/// Paths in the file are relative to it. Throws Error{Input} with file and line.
+Scene read_scene(const std::filesystem::path& path);
+
+}  // namespace liana

@@ -1,0 +1,130 @@
+#include "runtime/view/scene_buffers.h"
+
+#include <epoxy/gl.h>
+
+#include "runtime/view/leaf_mesh.h"
+#include "runtime/view/pack.h"
+#include "runtime/view/smooth_normals.h"
+
+namespace liana {
+namespace {
+
+struct LeafInstance {
+  std::array<float, 3> base;
+  std::array<float, 4> orientation;  // x y z w
+  std::array<float, 3> size;         // length, width, curl
+  std::array<uint8_t, 4> color;
+};
+
+struct MeshVertex {
+  std::array<float, 3> position, normal;
+};
+
+std::array<float, 3> floats(const Vec3& v) {
+  return {float(v.x()), float(v.y()), float(v.z())};
+}
+
+template <class T>
+void fill(GLenum target, const GlObject& buffer, const std::vector<T>& values) {
+  glBindBuffer(target, buffer.id());
+  glBufferData(target, GLsizeiptr(values.size() * sizeof(T)), values.data(), GL_STREAM_DRAW);
+}
+
+void attribute(int location, int count, size_t stride, size_t offset, bool per_instance = false,
+               bool bytes = false) {
+  glEnableVertexAttribArray(location);
+  glVertexAttribPointer(location, count, bytes ? GL_UNSIGNED_BYTE : GL_FLOAT, bytes, GLsizei(stride),
+                        reinterpret_cast<const void*>(offset));
+  if (per_instance) glVertexAttribDivisor(location, 1);
+}
+
+}  // namespace
+
+SceneBuffers::SceneBuffers() {
+  glBindVertexArray(tube_array_.id());
+  glBindBuffer(GL_ARRAY_BUFFER, tube_vertices_.id());
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, tube_indices_.id());
+  attribute(0, 3, sizeof(TubeVertex), offsetof(TubeVertex, position));
+  attribute(1, 3, sizeof(TubeVertex), offsetof(TubeVertex, normal));
+  attribute(2, 3, sizeof(TubeVertex), offsetof(TubeVertex, bark));
+  attribute(3, 4, sizeof(TubeVertex), offsetof(TubeVertex, color), false, true);
+
+  for (int outline = 0; outline < kLeafOutlineCount; ++outline) {
+    Leaves& leaves = leaves_[outline];
+    const LeafShape& shape = leaf_shape(LeafOutline(outline));
+    glBindVertexArray(leaves.array.id());
+    fill(GL_ARRAY_BUFFER, leaves.shape, shape.points);
+    attribute(0, 2, sizeof(Eigen::Vector2f), 0);
+    fill(GL_ELEMENT_ARRAY_BUFFER, leaves.indices, shape.triangles);
+    leaves.index_count = int(3 * shape.triangles.size());
+    glBindBuffer(GL_ARRAY_BUFFER, leaves.instances.id());
+    attribute(1, 3, sizeof(LeafInstance), offsetof(LeafInstance, base), true);
+    attribute(2, 4, sizeof(LeafInstance), offsetof(LeafInstance, orientation), true);
+    attribute(3, 3, sizeof(LeafInstance), offsetof(LeafInstance, size), true);
+    attribute(4, 4, sizeof(LeafInstance), offsetof(LeafInstance, color), true, true);
+  }
+
+  glBindVertexArray(mesh_array_.id());
+  glBindBuffer(GL_ARRAY_BUFFER, mesh_vertices_.id());
+  attribute(0, 3, sizeof(MeshVertex), offsetof(MeshVertex, position));
+  attribute(1, 3, sizeof(MeshVertex), offsetof(MeshVertex, normal));
+  glBindVertexArray(0);
+}
+
+void SceneBuffers::upload(const DrawScene& scene, int tube_sides) {
+  box_ = bounding_box(scene);
+  to_sun_ = scene.to_sun.norm() > 0 ? Vec3(scene.to_sun.normalized()) : Vec3(Vec3::UnitY());
+  ground_ = scene.ground;
+
+  tube_mesh_.vertices.clear();
+  tube_mesh_.triangles.clear();
+  for (const DrawTube& tube : scene.tubes) append_tube(tube, tube_sides, tube_mesh_);
+  glBindVertexArray(tube_array_.id());
+  fill(GL_ARRAY_BUFFER, tube_vertices_, tube_mesh_.vertices);
+  fill(GL_ELEMENT_ARRAY_BUFFER, tube_indices_, tube_mesh_.triangles);
+  tube_index_count_ = int(3 * tube_mesh_.triangles.size());
+
+  std::vector<LeafInstance> instances[kLeafOutlineCount];
+  for (const DrawLeaf& leaf : scene.leaves) {
+    const Quat& q = leaf.orientation;
+    instances[int(leaf.outline)].push_back({floats(leaf.base),
+                                            {float(q.x()), float(q.y()), float(q.z()), float(q.w())},
+                                            {float(leaf.length), float(leaf.width), float(leaf.curl)},
+                                            packed_color(leaf.color)});
+  }
+  for (int outline = 0; outline < kLeafOutlineCount; ++outline) {
+    fill(GL_ARRAY_BUFFER, leaves_[outline].instances, instances[outline]);
+    leaves_[outline].instance_count = int(instances[outline].size());
+  }
+
+  std::vector<MeshVertex> vertices;
+  mesh_ranges_.clear();
+  for (const DrawMesh& mesh : scene.meshes) {
+    const std::vector<Vec3> normals = corner_normals(mesh.mesh);
+    mesh_ranges_.push_back(
+        {int(vertices.size()), int(normals.size()), mesh.color.cast<float>(), mesh.bricks});
+    for (size_t corner = 0; corner < normals.size(); ++corner)
+      vertices.push_back({floats(mesh.mesh.positions[mesh.mesh.triangles[corner / 3][corner % 3]]),
+                          floats(normals[corner])});
+  }
+  fill(GL_ARRAY_BUFFER, mesh_vertices_, vertices);
+}
+
+void SceneBuffers::draw_tubes() const {
+  glBindVertexArray(tube_array_.id());
+  glDrawElements(GL_TRIANGLES, tube_index_count_, GL_UNSIGNED_INT, nullptr);
+}
+
+void SceneBuffers::draw_leaves(LeafOutline outline) const {
+  const Leaves& leaves = leaves_[int(outline)];
+  if (leaves.instance_count == 0) return;
+  glBindVertexArray(leaves.array.id());
+  glDrawElementsInstanced(GL_TRIANGLES, leaves.index_count, GL_UNSIGNED_INT, nullptr, leaves.instance_count);
+}
+
+void SceneBuffers::draw_mesh(const MeshRange& range) const {
+  glBindVertexArray(mesh_array_.id());
+  glDrawArrays(GL_TRIANGLES, range.first, range.count);
+}
+
+}  // namespace liana
