@@ -93,8 +93,7 @@ struct RandomTree {
 TEST(TreeSolver, MatchesDenseFactorisationOnRandomTrees) {
   // Well conditioned (below 1e4 or so): 1e-16 × condition leaves 1e-12.
   for (uint32_t seed = 0; seed < 20; ++seed)
-    EXPECT_LT(RandomTree(1 + 3 * static_cast<int>(seed), 1, 1, seed).relative_error(), 1e-11)
-        << "seed " << seed;
+    EXPECT_LT(RandomTree(1 + static_cast<int>(seed), 1, 1, seed).relative_error(), 1e-11) << "seed " << seed;
 }
 
 TEST(TreeSolver, KeepsItsDigitsWhenJointsAreMuchStifferThanWhatHangsOnThem) {
@@ -104,7 +103,7 @@ TEST(TreeSolver, KeepsItsDigitsWhenJointsAreMuchStifferThanWhatHangsOnThem) {
   for (double ratio : {1e2, 1e4, 1e6})
     for (double bend : {1.0, 1e3, 1e6})
       for (uint32_t seed = 0; seed < 5; ++seed)
-        EXPECT_LT(RandomTree(40, ratio, bend, seed).relative_error(), 1e-9)
+        EXPECT_LT(RandomTree(16, ratio, bend, seed).relative_error(), 1e-9)
             << "ratio " << ratio << ", bend " << bend << ", seed " << seed;
 }
 
