@@ -84,7 +84,9 @@ TEST(PlantFromBake, ComesBackToItsModelledShapeAfterAGust) {
 TEST(PlantFromBake, PlacementMovesAndTurnsTheWholePlant) {
   const Bake bake = test::synthetic_bake({.branches = 2});
   const Plant here = make_plant(bake);
-  const PlacementOptions placed{.position = {3, 0, -2}, .yaw = 0.7};
+  PlacementOptions placed;
+  placed.position = {3, 0, -2};
+  placed.yaw = 0.7;
   Plant there = make_plant(bake, placed);
   const Quat turn(Eigen::AngleAxisd(0.7, Vec3::UnitY()));
   for (size_t i = 0; i < here.motion.size(); ++i)

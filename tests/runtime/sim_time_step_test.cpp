@@ -62,8 +62,10 @@ double energy(const Plant& plant) {
   return sum;
 }
 
-void kick_tip(Plant& plant, double speed) {
-  plant.motion.back().velocity = speed * Vec3(0.6, 0.2, 0.77).normalized();
+// Sideways, the tip at `speed`, the rest by the square of its height.
+void kick(Plant& plant, double speed) {
+  const double top = plant.motion.back().position.y();
+  for (Motion& m : plant.motion) m.velocity = speed * std::pow(m.position.y() / top, 2) * Vec3(0.6, 0, 0.8);
 }
 
 double fastest(const Plant& plant) {
@@ -109,7 +111,7 @@ TEST(TimeStep, EnergyOfAReleasedBranchOnlyDecays) {
   for (double dt : {0.025, 0.005}) {
     Plant plant = test::rod_plant({.frequency = 1, .damping_factor = 0.0065}, 12);
     calibrate_plant(plant, {.dt = dt});
-    kick_tip(plant, 0.5);
+    kick(plant, 0.5);
     const double start = energy(plant);
     PlantStepper stepper;
     StepOptions options = kWeightless;
@@ -126,33 +128,50 @@ TEST(TimeStep, EnergyOfAReleasedBranchOnlyDecays) {
   }
 }
 
-TEST(TimeStep, StaysFiniteAndBoundedUnderAnyKick) {
+struct Ride {
+  double top_speed = 0, gap = 0;
+  int solves = 0;
+};
+
+Ride ride(Plant& plant, int steps) {
+  PlantStepper stepper;
+  Ride r;
+  for (int i = 0; i < steps; ++i) {
+    const StepReport report = stepper.step(plant, {}, {}, {});
+    EXPECT_TRUE(report.finite);
+    r.top_speed = std::max(r.top_speed, fastest(plant));
+    r.gap = std::max(r.gap, report.gap);
+    r.solves += report.solves;
+  }
+  return r;
+}
+
+TEST(TimeStep, StaysBoundedUnderAnyKickAndComesToRest) {
   for (double speed : {20.0, 100.0}) {
     Plant plant = calibrated_rod(1, 0.05, 20);
-    kick_tip(plant, speed);
-    PlantStepper stepper;
-    double top_speed = 0, gap = 0;
-    int solves = 0;
-    for (int i = 0; i < 2000; ++i) {
-      const StepReport report = stepper.step(plant, {}, {}, {});
-      ASSERT_TRUE(report.finite);
-      top_speed = std::max(top_speed, fastest(plant));
-      gap = std::max(gap, report.gap);
-      solves += report.solves;
-    }
-    EXPECT_LT(top_speed, 1.2 * speed);
-    EXPECT_LT(gap, 0.15);
-    EXPECT_LT(solves, 2 * 2000);
-    EXPECT_LT(fastest(plant), 2) << "and comes to rest";
-    RecordProperty("solves_per_step", std::to_string(solves / 2000.0));
+    kick(plant, speed);
+    const Ride r = ride(plant, 2000);
+    EXPECT_LT(r.top_speed, 1.2 * speed);
+    EXPECT_LT(r.gap, 0.2) << "of a particle's length";
+    EXPECT_LT(r.solves, 1.5 * 2000) << "redone steps are rare";
+    EXPECT_LT(fastest(plant), 0.2);
   }
+}
+
+TEST(TimeStep, StaysBoundedWhenOneParticleAloneIsShotAway) {
+  Plant plant = calibrated_rod(1, 0.05, 20);
+  plant.motion.back().velocity = Vec3(60, 20, 77);  // two particle lengths in each of the finest substeps
+  const Ride r = ride(plant, 2000);
+  EXPECT_LT(r.top_speed, 100);
+  EXPECT_LT(r.gap, 1);
+  EXPECT_LT(fastest(plant), 0.2);
 }
 
 TEST(TimeStep, CountsWhatItRedid) {
   Plant plant = calibrated_rod(1, 0.05, 20);
   PlantStepper stepper;
   EXPECT_EQ(stepper.step(plant, {}, {}, kWeightless).redone, 0);
-  kick_tip(plant, 50);
+  kick(plant, 50);
   const StepReport report = stepper.step(plant, {}, {}, kWeightless);
   EXPECT_GT(report.redone, 0);
   EXPECT_GT(report.solves, 2);
@@ -160,7 +179,7 @@ TEST(TimeStep, CountsWhatItRedid) {
 
 TEST(TimeStep, NotANumberFromOutsideFreezesThePlantInsteadOfSpreading) {
   Plant plant = calibrated_rod(1, 0.05, 5);
-  kick_tip(plant, 1);
+  kick(plant, 1);
   const Vec3 before = plant.motion[3].position;
   std::vector<Wrench> wind(5);
   wind[2].force.x() = std::numeric_limits<double>::quiet_NaN();
@@ -174,16 +193,16 @@ TEST(TimeStep, NotANumberFromOutsideFreezesThePlantInsteadOfSpreading) {
 
 TEST(TimeStep, AnchorCarriesAPointToItsTargetAndHoldsIt) {
   Plant plant = calibrated_rod(1, 0.2, 10);
-  const Vec3 target(0.2, 0.9, 0.1);
+  const Vec3 target(
+      0.2, 0.9, 0.1);  // a rod held at both ends, buckled: some 12 N at the anchor, 12 µm of a 1e6 N/m spring
   plant.anchors.push_back({.particle = ParticleId(9),
                            .on_particle = {0, 0.05, 0},
                            .target = target,
-                           .stiffness = 1e4 * Mat3::Identity(),
+                           .stiffness = 1e6 * Mat3::Identity(),
                            .damping = 10 * Mat3::Identity()});
   PlantStepper stepper;
   for (int i = 0; i < 600; ++i) ASSERT_TRUE(stepper.step(plant, {}, {}, kWeightless).finite);
   const Motion& tip = plant.motion.back();
-  // Bending the rod that far takes less than 1 N, which a spring of 1e4 N/m gives at 0.1 mm.
   EXPECT_LT((tip.position + tip.orientation * Vec3(0, 0.05, 0) - target).norm(), 1e-4);
   EXPECT_LT(fastest(plant), 1e-4);
 }
