@@ -202,12 +202,14 @@ void Climber::recalibrate_changed(Plant& plant, GrowthReport& report) {
   }
   const std::vector<double> carried = carried_masses(plant);
   calibrated_.resize(plant.branches.size());
+  const size_t turns = plant.branches.size() / 100 + 1, count = plant.branches.size();
   for (size_t i = 0; i < plant.branches.size(); ++i) {
     Branch& branch = plant.branches[i];
     double mass = 0;
     for (const ParticleId p : branch.particles) mass += plant.particles[p.index()].mass + carried[p.index()];
     Calibrated& last = calibrated_[i];
-    const double change = parameters_.recalibration;
+    const bool its_turn = (i + count - next_settled_ % count) % count < turns;
+    const double change = its_turn ? parameters_.settled : parameters_.recalibration;
     if (std::abs(branch.length - last.length) <= change * last.length && std::abs(mass - last.mass) <= change * last.mass)
       continue;
     const double scaling = branch.material.mass_scaling;
@@ -220,6 +222,7 @@ void Climber::recalibrate_changed(Plant& plant, GrowthReport& report) {
     if (!recalibrate(plant, BranchId(i), carried, chain_)) ++report.out_of_range;
     ++report.recalibrated;
   }
+  next_settled_ = (next_settled_ + turns) % count;
 }
 
 }  // namespace liana
