@@ -4,7 +4,6 @@
 // particle's width does the same through the solver, and pulls with a force that the plant can tear off from.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "runtime/growth/climber_parameters.h"
@@ -18,8 +17,8 @@ class Anchors {
   explicit Anchors(const AnchorParameters& parameters, double young_radius)
       : parameters_(parameters), young_radius_(young_radius) {}
 
-  /// Anchors a particle to the closest surface if it is near enough and not anchored yet. True when it holds on now.
-  bool attach(Plant& plant, ParticleId particle, std::span<const SdfObstacle* const> obstacles);
+  /// Anchors a particle to the closest surface, or to the ground, if that is near enough. True when it holds on now.
+  bool attach(Plant& plant, ParticleId particle, const Surroundings& around);
 
   /// Hardens anchors, lets them follow the stem's thickness, and releases those pulled beyond the distance.
   void update(Plant& plant, double dt_growth);

@@ -85,26 +85,21 @@ GrowthReport Climber::grow(Plant& plant, std::span<const SdfObstacle* const> obs
   return report;
 }
 
-// The first shoot is the trunk, rooted at the seed; the others start at its first head, in a fan along the support.
+// Every first shoot stands in the ground by itself, beside the others, and leans towards the support in a fan.
 void Climber::germinate(Plant& plant, const Surroundings& around) {
   const auto support = closest_support(around.obstacles, seed_, parameters_.tropisms.search_radius);
-  const Vec3 up = Vec3::UnitY();
   Vec3 to_support = support ? Vec3(-support->normal) : Vec3::Zero();
   to_support.y() = 0;
-  const Vec3 direction = (0.35 * up + to_support).normalized();
-  const Vec3 normal = to_support.isZero(1e-9) ? Vec3(Vec3::UnitZ()) : Vec3(-to_support.normalized());
-  for (unsigned i = 0; i < parameters_.first_shoots; ++i) {
-    // 0, then alternately to the sides: the trunk is the middle one.
-    const unsigned step = (i + 1) / 2, steps = std::max(1u, parameters_.first_shoots / 2);
-    const double course = parameters_.fan * step / steps * (i % 2 ? 1 : -1);
-    Shoot shoot{BranchId(), parameters_.tip_radius, course, parameters_.longest_shoot};
-    if (i == 0) {
-      start_shoot(plant, {ParticleId(), seed_}, BranchId(), direction, shoot);
-      finish_node(plant, 0, around);  // full-grown from the start, and never turned again
-    } else {
-      const Vec3 turned = Eigen::AngleAxisd(course, normal) * direction;
-      start_shoot(plant, {ParticleId(0), Vec3(0, plant.particles[0].half_length, 0)}, BranchId(0), turned, shoot);
-    }
+  const Vec3 up = Vec3::UnitY(), direction = (0.35 * up + to_support).normalized();
+  const Vec3 normal = to_support.norm() > 1e-3 ? Vec3(-to_support.normalized()) : Vec3(Vec3::UnitZ());
+  const int count = static_cast<int>(parameters_.first_shoots);
+  for (int i = 0; i < count; ++i) {
+    const double place = count > 1 ? 2.0 * i / (count - 1) - 1 : 0;  // -1 … 1
+    const Shoot shoot{BranchId(), parameters_.tip_radius, place * parameters_.fan, parameters_.longest_shoot};
+    const Vec3 beside = 6 * parameters_.tip_radius * (i - (count - 1) / 2.0) * normal.cross(up);
+    start_shoot(plant, {ParticleId(), seed_ - beside}, BranchId(), Eigen::AngleAxisd(shoot.course, normal) * direction,
+                shoot);
+    finish_node(plant, shoots_.size() - 1, around);  // full-grown from the start
   }
 }
 
@@ -120,7 +115,7 @@ void Climber::start_shoot(Plant& plant, const Attachment& at, BranchId parent, c
 }
 
 ParticleId Climber::append_stem(Plant& plant, const Shoot& shoot, const Attachment& at, const Quat& orientation) {
-  // The first particle of a plant is full-grown: it is what the seed was.
+  // The first particle of a stem from the seed is full-grown: it is what the seed was.
   const double length = parameters_.segment_length * (at.parent.valid() ? kYoungestSegment : 1);
   const SegmentShape shape{length / 2, shoot.tip_radius, shoot.tip_radius};
   const ParticleId id = append_segment(plant, shoot.branch, at, shape, orientation);
@@ -157,8 +152,7 @@ void Climber::finish_node(Plant& plant, size_t index, const Surroundings& around
   const Vec3 outward = outward_of(support, forward, around.to_sun);
   const Attachment here{node, Vec3(0, plant.particles[node.index()].half_length, 0)};
 
-  shoot.free_length =
-      anchors_.attach(plant, node, around.obstacles) ? 0 : shoot.free_length + parameters_.segment_length;
+  shoot.free_length = anchors_.attach(plant, node, around) ? 0 : shoot.free_length + parameters_.segment_length;
   shoot.light += (1 - occlusion(around.obstacles, head + 1e-3 * outward, around.to_sun) - shoot.light) / 3;
   crowding_.add(head, branch);
 
@@ -189,7 +183,7 @@ void Climber::hold_on_again(Plant& plant, const Surroundings& around) {
     const Particle& particle = plant.particles[next_hold_];
     const bool stem = plant.branches[particle.branch.index()].kind == DomainKind::Branch;
     const bool grown = 2 * particle.half_length >= parameters_.segment_length * (1 - 1e-9);
-    if (stem && grown && particle.parent.valid()) anchors_.attach(plant, id, around.obstacles);
+    if (stem && grown && particle.parent.valid()) anchors_.attach(plant, id, around);
   }
 }
 

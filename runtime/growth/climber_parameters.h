@@ -21,13 +21,13 @@ struct TropismParameters {
 };
 
 struct BranchingParameters {
-  double probability = 0.15;       ///< of a lateral shoot at a node ([Haedrich17] Table 2: BP)
+  double probability = 0.08;       ///< of a lateral shoot at a node ([Haedrich17] Table 2: BP)
   double variance = 0.3;           ///< V in [0, 1]: 1 lets a lateral leave up to 90° off its usual angle
   double angle = 0.85;             ///< rad between a lateral and its parent
   double falloff = 0.85;           ///< f of t_c = t_p f, tip radius of a lateral over its parent's
   unsigned max_laterals = 1;       ///< per node (Table 2: B)
   int max_level = 3;
-  double room = 0.09;              ///< m: a bud breaks only where no other stem is that near to its way
+  double room = 0.1;               ///< m: a bud breaks only where no other stem is that near to its way
 };
 
 struct LeafParameters {
@@ -57,7 +57,7 @@ struct ClimberParameters {
   double segment_length = 0.045;   ///< m, of a full-grown particle
   double tip_radius = 1.2e-3;      ///< m, of the first shoots
   unsigned first_shoots = 5;       ///< from one seed
-  double fan = 1.0;                ///< rad: their courses spread from -fan to +fan about upwards
+  double fan = 0.8;                ///< rad: their courses spread from -fan to +fan about upwards
   double longest_shoot = 5;        ///< m; halved with every level
   double longest_free = 0.35;      ///< m without hold, after which a tip stops
   double pipe_exponent = 2;        ///< n: a stem's rⁿ is the sum of those it carries (pipe model)
@@ -65,7 +65,7 @@ struct ClimberParameters {
   double recalibration = 0.1;      ///< relative change of a branch's length or mass that lets it be calibrated at once
   double settled = 5e-3;           ///< the same, of a branch whose turn it is: all take turns, within 2.5 s at 25 ms
   Vec3 gravity = {0, -9.81, 0};    ///< m/s², that the plant grows under
-  size_t max_particles = 4000;     ///< stems and leaves; no bud breaks and no tip goes on beyond it
+  size_t max_particles = 5000;     ///< stems and leaves; no bud breaks and no tip goes on beyond it
   TropismParameters tropisms;
   BranchingParameters branching;
   LeafParameters leaves;

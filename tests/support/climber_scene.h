@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "runtime/growth/climber.h"
-#include "runtime/sim/collision/contacts.h"
-#include "runtime/sim/time_step.h"
+#include "runtime/sim/collision/contact_step.h"
 #include "runtime/wind/wind_field.h"
 
 namespace liana {
@@ -26,18 +25,17 @@ class ClimberScene {
   CollisionScene collision() const { return {obstacles(), 0.0}; }
 
   struct Seconds {
-    double growth = 0, collision = 0, wind = 0, physics = 0;  ///< wall clock
+    double growth = 0, wind = 0, physics = 0;  ///< wall clock
   };
 
   SdfObstacle wall;
   Plant plant;
   Climber climber;
-  Contacts contacts;
-  PlantStepper stepper;
+  ContactStepper stepper;
   double growth_speed = 1;   ///< growth seconds per second
   double time = 0;           ///< s
   GrowthReport growth;       ///< of the last step
-  size_t out_of_range = 0, recalibrated = 0, redone = 0, contact_springs = 0;  ///< sums over all steps
+  size_t out_of_range = 0, recalibrated = 0, redone = 0, contact_springs = 0, passes = 0;  ///< sums over all steps
   double max_penetration = 0, max_speed = 0;                      ///< over all steps, m and m/s
   bool sound = true;                                              ///< every step finite, every gap held
   Seconds seconds;
