@@ -34,7 +34,8 @@ SpeciesLaw ivy_like_law() {
 }
 
 ClimberScene::ClimberScene(const ClimberParameters& parameters, uint64_t seed)
-    : wall(box_mesh({-2.5, -0.1, -0.2}, {2.5, 3, 0})), climber(parameters, ivy_like_law(), {0, 0, 0.12}, seed) {}
+    : wall(box_mesh({-2.5, -0.1, -0.2}, {2.5, 3, 0})),
+      climber(parameters, ivy_like_law(), {0, 0, 0.12}, seed) {}
 
 void ClimberScene::step(const WindField* wind) {
   const double dt = plant.scheme.dt;

@@ -13,7 +13,8 @@ namespace liana {
 /// Frequencies and damping of the order of ivy's; 0.7 Hz at 1 m.
 SpeciesLaw ivy_like_law();
 
-/// A 5 m wide, 3 m high wall of 0.2 m with its face at z = 0, and a seed on the ground 0.12 m before its middle.
+/// A 5 m wide, 3 m high wall of 0.2 m with its face at z = 0, and a seed on the ground 0.12 m before its
+/// middle.
 class ClimberScene {
  public:
   explicit ClimberScene(const ClimberParameters& parameters = {}, uint64_t seed = 1);
@@ -32,12 +33,13 @@ class ClimberScene {
   Plant plant;
   Climber climber;
   ContactStepper stepper;
-  double growth_speed = 1;   ///< growth seconds per second
-  double time = 0;           ///< s
-  GrowthReport growth;       ///< of the last step
-  size_t out_of_range = 0, recalibrated = 0, redone = 0, contact_springs = 0, passes = 0;  ///< sums over all steps
-  double max_penetration = 0, max_speed = 0;                      ///< over all steps, m and m/s
-  bool sound = true;                                              ///< every step finite, every gap held
+  double growth_speed = 1;  ///< growth seconds per second
+  double time = 0;          ///< s
+  GrowthReport growth;      ///< of the last step
+  size_t out_of_range = 0, recalibrated = 0, redone = 0, contact_springs = 0,
+         passes = 0;                          ///< sums over all steps
+  double max_penetration = 0, max_speed = 0;  ///< over all steps, m and m/s
+  bool sound = true;                          ///< every step finite, every gap held
   Seconds seconds;
 
  private:

@@ -2,8 +2,9 @@
 
 namespace liana {
 
-ContactStepReport ContactStepper::step(Plant& plant, const CollisionScene& scene, std::span<const Wrench> external,
-                                       std::vector<WorldSpring>& springs, const StepOptions& options) {
+ContactStepReport ContactStepper::step(Plant& plant, const CollisionScene& scene,
+                                       std::span<const Wrench> external, std::vector<WorldSpring>& springs,
+                                       const StepOptions& options) {
   ContactStepReport report;
   report.contacts = contacts_.gather(plant, scene, springs);
   before_.assign(plant.motion.begin(), plant.motion.end());

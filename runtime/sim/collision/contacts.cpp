@@ -52,35 +52,42 @@ struct Gap {
 
 /// Calls visit(Gap) for every probe of particles from `first` on that can get into something within dt.
 template <class Visit>
-void for_each_gap(const Plant& plant, const CollisionScene& scene, double dt, size_t first, const Visit& visit) {
+void for_each_gap(const Plant& plant, const CollisionScene& scene, double dt, size_t first,
+                  const Visit& visit) {
   for (size_t i = first; i < plant.particles.size(); ++i) {
     const Particle& particle = plant.particles[i];
     const Motion& motion = plant.motion[i];
     const Mat3 to_world = motion.orientation.toRotationMatrix();
     const bool blade = plant.branches[particle.branch.index()].kind == DomainKind::Leaf;
-    const double travel = dt * (motion.velocity.norm() + particle.half_length * motion.angular_velocity.norm() +
-                                dt * motion.acceleration.norm() / 2);
+    const double travel =
+        dt * (motion.velocity.norm() + particle.half_length * motion.angular_velocity.norm() +
+              dt * motion.acceleration.norm() / 2);
     const double reach = std::max(particle.half_width, particle.half_thickness) + travel;
     for (uint64_t p = 0; p < 2; ++p) {
       const Probe& probe = (blade ? kBladeProbes : kStemProbes)[p];
       const Vec3 on_axis = Vec3(0, probe.along * particle.half_length, 0);
       const Vec3 x = motion.position + to_world * on_axis;
-      const auto report = [&](const Nearest& found, uint64_t solid) {
-        if (found.distance > reach) return;
-        const Vec3 arm = reach_towards(particle, to_world.transpose() * found.normal, probe.width);
-        visit(Gap{i, (uint64_t(i) * 2 + p) << 16 | solid, on_axis + arm,
-                  found.distance + (to_world * arm).dot(found.normal), found.normal});
+      const auto look = [&](uint64_t solid, const auto& nearest_to) {
+        const Nearest on_axis_found = nearest_to(x);
+        if (on_axis_found.distance > reach) return;
+        const Vec3 arm = reach_towards(particle, to_world.transpose() * on_axis_found.normal, probe.width);
+        // Beside an edge the solid is no half space: what counts is the distance of the point itself.
+        const Nearest found = nearest_to(x + to_world * arm);
+        if (found.distance <= reach)
+          visit(Gap{i, (uint64_t(i) * 2 + p) << 16 | solid, on_axis + arm, found.distance, found.normal});
       };
-      for (size_t s = 0; s < scene.solids.size(); ++s) report(nearest(*scene.solids[s], x, reach), s + 1);
-      if (scene.ground_height) report({x.y() - *scene.ground_height, Vec3::UnitY()}, 0);
+      for (size_t s = 0; s < scene.solids.size(); ++s)
+        look(s + 1, [&](const Vec3& at) { return nearest(*scene.solids[s], at, reach); });
+      if (scene.ground_height)
+        look(0, [&](const Vec3& at) { return Nearest{at.y() - *scene.ground_height, Vec3::UnitY()}; });
     }
   }
 }
 
 }  // namespace
 
-// A plant's base stands in the ground or in a wall and thickens there: its roots, and what is inside when it is made and
-// connected to them through particles that were inside too, are left alone.
+// A plant's base stands in the ground or in a wall and thickens there: its roots, and what is inside when it
+// is made and connected to them through particles that were inside too, are left alone.
 void Contacts::notice_new_particles(const Plant& plant, const CollisionScene& scene) {
   const size_t known = exempt_.size();
   if (known == plant.particles.size()) return;
@@ -96,15 +103,16 @@ void Contacts::notice_new_particles(const Plant& plant, const CollisionScene& sc
 
 // With the force k(t - x₁) - d v₁ of the end of the step, d = kΔt and k ≫ m/Δt², the step ends with
 // (x₁ - t) + Δt v₁ = 0: the point comes to the surface and stays there. The time step takes spring forces at
-// n+1-α_f, so target and its velocity are mixed with the present ones by α_f, which leaves (1-α_f) times that force.
-WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, size_t particle, const Vec3& point, double gap,
-                             const Vec3& n) const {
+// n+1-α_f, so target and its velocity are mixed with the present ones by α_f, which leaves (1-α_f) times that
+// force.
+WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, size_t particle, const Vec3& point,
+                             double gap, const Vec3& n) const {
   const double dt = plant.scheme.dt, alpha_f = GeneralizedAlpha(plant.scheme.rho_infinity).alpha_f;
   const Vec3 arm = motion.orientation * point;
   const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(arm);
   const double approach = velocity.dot(n);
-  const double k =
-      std::max(options_.stiffness_ratio * plant.particles[particle].mass / (dt * dt), options_.least_stiffness);
+  const double k = std::max(options_.stiffness_ratio * plant.particles[particle].mass / (dt * dt),
+                            options_.least_stiffness);
   const double pressing = (1 - alpha_f) * k * std::max(0.0, -gap);  // N
   const Vec3 sliding = velocity - approach * n;
   const double friction = options_.friction * pressing / std::max(sliding.norm(), options_.creep_speed);
@@ -121,7 +129,8 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, size_t pa
   return spring;
 }
 
-ContactReport Contacts::gather(const Plant& plant, const CollisionScene& scene, std::vector<WorldSpring>& springs) {
+ContactReport Contacts::gather(const Plant& plant, const CollisionScene& scene,
+                               std::vector<WorldSpring>& springs) {
   notice_new_particles(plant, scene);
   made_.clear();
   const double dt = plant.scheme.dt;
@@ -132,7 +141,8 @@ ContactReport Contacts::gather(const Plant& plant, const CollisionScene& scene, 
     report.max_penetration = std::max(report.max_penetration, -found.gap);
     const Motion& motion = plant.motion[found.particle];
     const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(motion.orientation * found.point);
-    const double coming = dt * velocity.dot(found.normal) + dt * dt / 2 * motion.acceleration.dot(found.normal);
+    const double coming =
+        dt * velocity.dot(found.normal) + dt * dt / 2 * motion.acceleration.dot(found.normal);
     if (found.gap + std::min(0.0, coming) >= 0) return;
     springs.push_back(spring(plant, motion, found.particle, found.point, found.gap, found.normal));
     made_.push_back(found.key);
@@ -141,15 +151,17 @@ ContactReport Contacts::gather(const Plant& plant, const CollisionScene& scene, 
   return report;
 }
 
-size_t Contacts::gather_missed(const Plant& after, std::span<const Motion> before, const CollisionScene& scene,
-                               double tolerance, std::vector<WorldSpring>& springs) {
+size_t Contacts::gather_missed(const Plant& after, std::span<const Motion> before,
+                               const CollisionScene& scene, double tolerance,
+                               std::vector<WorldSpring>& springs) {
   const size_t known = made_.size();
   for_each_gap(after, scene, 0, 0, [&](const Gap& found) {
     if (exempt_[found.particle] || found.gap > -tolerance) return;
     if (std::binary_search(made_.begin(), made_.begin() + known, found.key)) return;
     // The plane it is behind now, seen from where it started.
     const Motion &now = after.motion[found.particle], &start = before[found.particle];
-    const Vec3 came = now.position + now.orientation * found.point - start.position - start.orientation * found.point;
+    const Vec3 came =
+        now.position + now.orientation * found.point - start.position - start.orientation * found.point;
     const double gap = found.gap - came.dot(found.normal);
     springs.push_back(spring(after, start, found.particle, found.point, gap, found.normal));
     made_.push_back(found.key);
