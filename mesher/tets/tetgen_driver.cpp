@@ -83,7 +83,7 @@ void mesh_volume(tetgenbehavior& behavior, tetgenio& in, tetgenio& out) {
 }  // namespace
 
 TetGenResult run_tetgen(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                        std::span<const uint8_t> is_root, const TetOptions& options) {
+                        std::span<const uint8_t> is_root, const TetOptions& options, Polish polish) {
   initialise_predicates();
   TetGenResult result;
   const std::vector<uint32_t> order = insertion_order(positions.size());
@@ -93,6 +93,7 @@ TetGenResult run_tetgen(std::span<const Vec3> positions, std::span<const Triangl
   tetgenbehavior behavior;
   std::string switches = fmt::format("pYq{}/{}Q", options.radius_edge_ratio, options.min_dihedral);
   require(behavior.parse_commandline(switches.data()), "TetGen refuses its switches");
+  behavior.optscheme = polish == Polish::Flips ? 1 : 7;
   behavior.no_sort = 1;
   behavior.brio_hilbert = 0;
   try {
@@ -113,9 +114,9 @@ TetGenResult run_tetgen(std::span<const Vec3> positions, std::span<const Triangl
   for (int t = 0; t < out.numberoftetrahedra; ++t)
     for (int k = 0; k < 4; ++k) result.tets[t][k] = original(out.tetrahedronlist[4 * t + k]);
   for (int f = 0; f < out.numberoftrifaces; ++f) {
-    if (out.trifacemarkerlist[f] != kRootMarker) continue;
     const int* face = out.trifacelist + 3 * f;
-    result.root_faces.push_back({original(face[0]), original(face[1]), original(face[2])});
+    result.boundary.push_back(
+        {{original(face[0]), original(face[1]), original(face[2])}, out.trifacemarkerlist[f] == kRootMarker});
   }
   return result;
 }

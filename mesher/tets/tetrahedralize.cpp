@@ -8,12 +8,16 @@
 #include "mesher/base/error.h"
 #include "mesher/base/hash.h"
 #include "mesher/surface/self_intersection.h"
-#include "mesher/tets/tetgen_driver.h"
+#include "mesher/tets/slivers.h"
 
 namespace liana {
 namespace {
 
+/// TetGen sees the surface at this extent, each vertex moved by up to kJitter of the solid's thickness.
+constexpr double kPreparedExtent = 0.999, kJitter = 3e-7;
 constexpr double kVolumeTolerance = 1e-6;
+/// Of the solid's thickness and volume; see remove_slivers(). Frequencies change by less than 0.1 %.
+constexpr double kSliverHeight = 1e-3, kSliverVolume = 1e-4;
 
 [[noreturn]] void refuse(const std::string& reason) {
   throw Error(Error::Kind::Input, "cannot fill the surface with tetrahedra: " + reason,
@@ -79,7 +83,7 @@ void check_closed(const Mesh& surface) {
 Mesh prepare(const Mesh& surface, const Measures& m, double jitter, std::vector<uint32_t>& source) {
   Mesh prepared;
   std::vector<uint32_t> index(surface.positions.size(), UINT32_MAX);
-  const double scale = 0.999 / m.extent;
+  const double scale = kPreparedExtent / m.extent;
   for (const Triangle& t : surface.triangles) {
     Triangle& mapped = prepared.triangles.emplace_back();
     for (int k = 0; k < 3; ++k) {
@@ -100,15 +104,33 @@ Mesh prepare(const Mesh& surface, const Measures& m, double jitter, std::vector<
   return prepared;
 }
 
-void check_result(const TetMesh& mesh, double surface_volume) {
+void orient(TetGenResult& mesh) {  // TetGen counts the other handedness as positive
+  const std::vector<Vec3>& p = mesh.positions;
+  for (auto& [a, b, c, d] : mesh.tets)
+    if (six_volumes(p[a], p[b], p[c], p[d]) < 0) std::swap(c, d);
+}
+
+double volume_of(const TetGenResult& mesh) {
   double volume = 0;
-  for (const auto& [a, b, c, d] : mesh.tets) {
-    const double v = six_volumes(mesh.positions[a], mesh.positions[b], mesh.positions[c], mesh.positions[d]);
-    if (!(v > 0)) refuse("it is too thin somewhere: a tetrahedron has no volume");
-    volume += v / 6;
+  const std::vector<Vec3>& p = mesh.positions;
+  for (const auto& [a, b, c, d] : mesh.tets) volume += six_volumes(p[a], p[b], p[c], p[d]) / 6;
+  return volume;
+}
+
+/// In the prepared mesh's units.
+TetGenResult fill(const Mesh& prepared, std::span<const uint8_t> is_root, const TetOptions& options,
+                  double volume, double thickness) {
+  for (const Polish polish : {Polish::Flips, Polish::Points}) {
+    TetGenResult filled = run_tetgen(prepared.positions, prepared.triangles, is_root, options, polish);
+    if (!filled.failure.empty()) refuse(filled.failure);
+    if (filled.tets.empty()) refuse("TetGen found no inside");
+    orient(filled);
+    const double found = volume_of(filled);
+    if (!(std::abs(found / volume - 1) < kVolumeTolerance))
+      refuse(fmt::format("the tetrahedra fill {:.9g} of its volume", found / volume));
+    if (remove_slivers(filled, kSliverHeight * thickness, kSliverVolume * volume)) return filled;
   }
-  if (!(std::abs(volume / surface_volume - 1) < kVolumeTolerance))
-    refuse(fmt::format("the tetrahedra fill {:.9g} m³ of its {:.9g} m³", volume, surface_volume));
+  refuse("it is too thin somewhere: tetrahedra without volume cannot be avoided");
 }
 
 }  // namespace
@@ -119,28 +141,25 @@ TetMesh tetrahedralize(const Mesh& surface, std::span<const uint8_t> is_root, co
   const Measures m = measure(surface);
   if (!(m.extent > 0) || !std::isfinite(m.extent)) refuse("it has no extent");
   const double thickness = 2 * m.volume / m.area;  // half a rod's diameter, a sheet's thickness
-  if (m.volume < 0) refuse("it is oriented inward");
+  if (thickness < -1e-7 * m.extent) refuse("it is oriented inward");
   if (!(thickness > 1e-7 * m.extent)) refuse("it is flat");
 
   std::vector<uint32_t> source;
-  const Mesh prepared = prepare(surface, m, 3e-7 * thickness / m.extent, source);
+  const Mesh prepared = prepare(surface, m, kJitter * thickness / m.extent, source);
   // After the jitter: what TetGen will see is what must not cross.
   if (self_intersects(prepared)) refuse("it crosses itself");
-
-  TetGenResult filled = run_tetgen(prepared.positions, prepared.triangles, is_root, options);
-  if (!filled.failure.empty()) refuse(filled.failure);
-  if (filled.tets.empty()) refuse("TetGen found no inside");
+  const double scale = m.extent / kPreparedExtent;
+  TetGenResult filled = fill(prepared, is_root, options, m.volume / std::pow(scale, 3), thickness / scale);
 
   TetMesh mesh;
-  const double scale = m.extent / 0.999;
   for (const Vec3& p : filled.positions) mesh.positions.push_back(m.centre + scale * p);
   for (size_t i = 0; i < source.size(); ++i) mesh.positions[i] = surface.positions[source[i]];
   mesh.tets = std::move(filled.tets);
-  mesh.root_faces = std::move(filled.root_faces);
-  for (auto& [a, b, c, d] : mesh.tets)  // TetGen counts the other handedness as positive
-    if (six_volumes(filled.positions[a], filled.positions[b], filled.positions[c], filled.positions[d]) < 0)
-      std::swap(c, d);
-  check_result(mesh, m.volume);
+  for (const BoundaryFace& f : filled.boundary)
+    if (f.is_root) mesh.root_faces.push_back(f.corners);
+  const std::vector<Vec3>& p = mesh.positions;
+  for (const auto& [a, b, c, d] : mesh.tets)
+    if (!(six_volumes(p[a], p[b], p[c], p[d]) > 0)) refuse("it is too thin somewhere");
   return mesh;
 }
 

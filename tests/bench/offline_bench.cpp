@@ -2,10 +2,10 @@
 #include <benchmark/benchmark.h>
 
 #include "mesher/tets/tetrahedralize.h"
-#include "modal/lowest_mode.h"
 #include "modal/assembly.h"
-#include "modal/subspace_iteration.h"
 #include "modal/cholesky.h"
+#include "modal/lowest_mode.h"
+#include "modal/subspace_iteration.h"
 #include "tests/support/shapes.h"
 
 namespace liana {
@@ -16,8 +16,12 @@ std::vector<MarkedMesh> unique_branches(int count) {
   std::vector<MarkedMesh> branches;
   for (int i = 0; i < count; ++i) {
     const double length = 0.2 + 0.01 * i, aspect = 10 * std::pow(10., (i % 17) / 16.);
-    branches.push_back(make_tube({.sides = 6, .length = length, .diameter = length / aspect,
-                                  .tip_scale = 0.7, .bend = 0.3 * (i % 5) / 4., .stations = {}}));
+    branches.push_back(make_tube({.sides = 6,
+                                  .length = length,
+                                  .diameter = length / aspect,
+                                  .tip_scale = 0.7,
+                                  .bend = 0.3 * (i % 5) / 4.,
+                                  .stations = {}}));
   }
   return branches;
 }
