@@ -9,14 +9,12 @@
 #include "mesher/base/files.h"
 #include "mesher/io/plant_file.h"
 #include "tests/support/program.h"
+#include "tests/support/scratch_folder.h"
 
 namespace liana {
 namespace {
 
 namespace fs = std::filesystem;
-using test::ProgramResult;
-using test::run_liana;
-using test::TemporaryFolder;
 using testing::HasSubstr;
 
 const fs::path kData = LIANA_SOURCE_DIR "/data";
@@ -52,7 +50,7 @@ class BadInput : public testing::Test {
     return static_cast<size_t>(std::distance(fs::recursive_directory_iterator(folder_.path()), {}));
   }
 
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
 };
 
 std::string random_bytes(size_t count) {

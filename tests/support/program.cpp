@@ -4,28 +4,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
-
-#include "mesher/base/error.h"
 #include "mesher/base/files.h"
+#include "tests/support/scratch_folder.h"
 
-namespace liana::test {
+namespace liana {
 
 namespace fs = std::filesystem;
 
-TemporaryFolder::TemporaryFolder() {
-  std::string pattern = (fs::temp_directory_path() / "liana-test-XXXXXX").string();
-  require(mkdtemp(pattern.data()) != nullptr, "no temporary folder");
-  path_ = pattern;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
-
 ProgramResult run_liana(const std::vector<std::string>& arguments, const fs::path& folder) {
-  const TemporaryFolder capture;
+  const ScratchFolder capture;
   const fs::path out = capture / "out", err = capture / "err";
   const pid_t child = fork();
   if (child == 0) {
@@ -44,4 +31,4 @@ ProgramResult run_liana(const std::vector<std::string>& arguments, const fs::pat
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_file(out), read_file(err)};
 }
 
-}  // namespace liana::test
+}  // namespace liana

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace liana::test {
+namespace liana {
 
 struct ProgramResult {
   int exit_code;    ///< 128 + signal when it was killed
@@ -16,18 +16,4 @@ struct ProgramResult {
 /// Runs the built program in `folder`. Never throws for a program that fails: look at the exit code.
 ProgramResult run_liana(const std::vector<std::string>& arguments, const std::filesystem::path& folder = ".");
 
-/// A fresh folder, removed with its contents at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder();
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
-
-}  // namespace liana::test
+}  // namespace liana
