@@ -6,19 +6,21 @@ void main() {
   vec3 ray = ray_corner + gl_FragCoord.x * ray_right + gl_FragCoord.y * ray_up;
   vec3 world = eye - ray * (eye.y / min(ray.y, -1e-6));
   vec2 p = world.xz;
-  float distance = length(world - eye);
   float pixel = length(fwidth(p));
-  float patches = fractal(p * 0.9 + 5.0), broad = noise(p * 0.13);
-  float tufts = mix(noise(p * 24.0), 0.5, smoothstep(0.02, 0.08, pixel));
-  float blades = mix(noise(vec2(p.x * 260.0 + 8.0 * tufts, p.y * 90.0)) * 0.6 + noise(p.yx * vec2(220.0, 80.0)) * 0.4, 0.5,
-                     smoothstep(0.003, 0.014, pixel));
-  float cover = smoothstep(0.30, 0.62, patches + 0.35 * (tufts - 0.5) + 0.15 * (broad - 0.5));
-  vec3 grass = mix(vec3(0.062, 0.105, 0.024), vec3(0.16, 0.20, 0.055), 0.65 * blades + 0.35 * tufts);
-  grass = mix(grass, vec3(0.20, 0.19, 0.075), 0.35 * broad);
-  vec3 soil = mix(vec3(0.105, 0.075, 0.05), vec3(0.19, 0.145, 0.10), 0.5 * tufts + 0.5 * blades);
+  float patches = fractal(p * 0.7 + 5.0), broad = noise(p * 0.11);
+  float tufts = mix(noise(p * 17.0 + 2.0 * noise(p * 5.0)), 0.5, smoothstep(0.02, 0.10, pixel));
+  float leaning = 1.1 * noise(p * 1.3);
+  vec2 q = mat2(cos(leaning), sin(leaning), -sin(leaning), cos(leaning)) * p;
+  float blades = mix(0.6 * noise(q * vec2(330.0, 75.0)) + 0.4 * noise(q.yx * vec2(270.0, 60.0) + 9.0), 0.5,
+                     smoothstep(0.004, 0.016, pixel));
+  float cover = smoothstep(0.18, 0.40, patches + 0.40 * (tufts - 0.5) + 0.25 * (blades - 0.5));
+  vec3 grass = mix(vec3(0.028, 0.043, 0.012), vec3(0.125, 0.150, 0.048), blades * blades * 1.2 + 0.30 * tufts);
+  grass *= 0.75 + 0.5 * patches;
+  grass = mix(grass, vec3(0.13, 0.125, 0.045), 0.30 * broad);
+  vec3 soil = mix(vec3(0.060, 0.042, 0.024), vec3(0.145, 0.108, 0.066), 0.5 * tufts + 0.6 * blades);
   vec3 albedo = mix(soil, grass, cover);
-  vec3 n = bumped(vec3(0.0, 1.0, 0.0), world, 0.012 * tufts + 0.006 * blades * cover);
+  vec3 n = bumped(vec3(0.0, 1.0, 0.0), world, 0.016 * tufts + 0.007 * blades);
   float sun = max(dot(n, to_sun), 0.0) * sunlit(world, vec3(0.0, 1.0, 0.0));
-  float hollow = 0.70 + 0.30 * blades;
-  fragment = finished(kSunLight * sun * albedo, albedo * hollow * ambient(n), world);
+  float hollow = 0.55 + 0.45 * blades;
+  fragment = finished(kSunLight * sun * albedo * hollow * 1.3, albedo * hollow * ambient(n), world);
 }
