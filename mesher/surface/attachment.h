@@ -1,6 +1,7 @@
 // How near a point is to what a domain grows from.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "mesher/plant/segmented_plant.h"
@@ -14,6 +15,9 @@ class Attachment {
 
   /// m: distance to the parent's surface, negative inside the parent; the height for a trunk.
   double depth(const Vec3& point) const;
+
+  /// m: how far out a point stands: the depth, but 0 anywhere inside the parent.
+  double height(const Vec3& point) const { return parent_ ? std::max(depth(point), 0.0) : depth(point); }
 
   /// The vertex of least depth among the candidates.
   uint32_t nearest(const Mesh& mesh, const std::vector<uint32_t>& candidates) const;

@@ -55,7 +55,7 @@ class LineCut {
     const uint32_t m = point_between(o, p), n = point_between(o, q);
     replace(index, {o, m, n});
     const std::vector<Vec3>& at = surface_.mesh.positions;
-    if ((at[m] - at[q]).squaredNorm() <= (at[n] - at[p]).squaredNorm()) {
+    if ((at[m] - at[q]).squaredNorm() <= 1.001 * (at[n] - at[p]).squaredNorm()) {
       add(index, {m, p, q});
       add(index, {m, q, n});
     } else {

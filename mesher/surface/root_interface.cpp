@@ -110,10 +110,20 @@ std::vector<std::vector<uint8_t>> root_edges(const Mesh& mesh,
                                              const Attachment& attachment) {
   std::vector<uint32_t> border;
   for (const std::vector<uint32_t>& loop : loops) border.insert(border.end(), loop.begin(), loop.end());
-  const Vec3 near = mesh.positions[attachment.nearest(mesh, border)];
-  Vec3 far = near;
-  for (const Vec3& p : mesh.positions)
-    if ((p - near).squaredNorm() > (far - near).squaredNorm()) far = p;
+  // A blade may touch its twig anywhere; its base is at the end of its long axis and at the parent.
+  Vec3 near = Vec3::Zero(), far = Vec3::Zero();
+  double best = -std::numeric_limits<double>::infinity();
+  for (const uint32_t v : border) {
+    const Vec3& p = mesh.positions[v];
+    const auto beyond = std::max_element(border.begin(), border.end(), [&](uint32_t a, uint32_t b) {
+      return (mesh.positions[a] - p).squaredNorm() < (mesh.positions[b] - p).squaredNorm();
+    });
+    const double score = (mesh.positions[*beyond] - p).norm() - 2 * attachment.height(p);
+    if (score <= best) continue;
+    best = score;
+    near = p;
+    far = mesh.positions[*beyond];
+  }
   const double length = (far - near).norm();
   const Vec3 axis = (far - near) / length;
   const auto along = [&](uint32_t v) { return (mesh.positions[v] - near).dot(axis); };
