@@ -1,5 +1,8 @@
 #include "tests/support/block_tets.h"
 
+#include <algorithm>
+#include <map>
+
 namespace liana {
 
 TetMesh make_block(int nx, int ny, int nz, const std::function<Vec3(const Vec3&)>& map) {
@@ -36,6 +39,43 @@ TetMesh make_block(int nx, int ny, int nz, const std::function<Vec3(const Vec3&)
                           std::array{t[0], t[1], t[3]}, std::array{t[0], t[2], t[1]}})
       if (f[0] % (nx + 1) == 0 && f[1] % (nx + 1) == 0 && f[2] % (nx + 1) == 0) mesh.root_faces.push_back(f);
   return mesh;
+}
+
+TetMesh refined(const TetMesh& mesh) {
+  TetMesh fine;
+  fine.positions = mesh.positions;
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> middles;
+  const auto middle = [&](uint32_t a, uint32_t b) {
+    const auto [entry, added] =
+        middles.try_emplace(std::minmax(a, b), static_cast<uint32_t>(fine.positions.size()));
+    if (added) fine.positions.push_back((mesh.positions[a] + mesh.positions[b]) / 2);
+    return entry->second;
+  };
+  for (const auto& [a, b, c, d] : mesh.tets) {
+    const uint32_t ab = middle(a, b), ac = middle(a, c), ad = middle(a, d), bc = middle(b, c),
+                   bd = middle(b, d), cd = middle(c, d);
+    // Corners, then the octahedron between them about its diagonal ac-bd.
+    for (std::array<uint32_t, 4> tet : {std::array{a, ab, ac, ad},
+                                        {ab, b, bc, bd},
+                                        {ac, bc, c, cd},
+                                        {ad, bd, cd, d},
+                                        {ac, bd, ab, ad},
+                                        {ac, bd, ad, cd},
+                                        {ac, bd, cd, bc},
+                                        {ac, bd, bc, ab}}) {
+      const Vec3& o = fine.positions[tet[0]];
+      const Vec3 u = fine.positions[tet[1]] - o, v = fine.positions[tet[2]] - o,
+                 w = fine.positions[tet[3]] - o;
+      if (u.cross(v).dot(w) < 0) std::swap(tet[2], tet[3]);
+      fine.tets.push_back(tet);
+    }
+  }
+  for (const auto& [a, b, c] : mesh.root_faces) {
+    const uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    for (const auto& face : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
+      fine.root_faces.push_back(face);
+  }
+  return fine;
 }
 
 }  // namespace liana

@@ -11,4 +11,7 @@ namespace liana {
 /// `map`, which must keep the orientation. root_faces are those that lay on x = 0.
 TetMesh make_block(int nx, int ny, int nz, const std::function<Vec3(const Vec3&)>& map);
 
+/// Every tet split into eight of half the size; root faces into four.
+TetMesh refined(const TetMesh& mesh);
+
 }  // namespace liana
