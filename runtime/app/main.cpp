@@ -1,0 +1,71 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "mesher/base/error.h"
+#include "mesher/base/nearest_word.h"
+#include "runtime/app/verbs.h"
+
+namespace {
+
+using liana::Error;
+
+int exit_code_of(Error::Kind kind) {
+  switch (kind) {
+    case Error::Kind::Usage:
+      return liana::kUsageError;
+    case Error::Kind::Partial:
+      return liana::kPartial;
+    case Error::Kind::Cancelled:
+      return liana::kCancelled;
+    case Error::Kind::Input:
+    case Error::Kind::Output:
+      break;
+  }
+  return liana::kInputError;
+}
+
+void complain(const std::string& what, const std::string& hint) {
+  fmt::print(stderr, "liana: {}\n", what);
+  if (!hint.empty()) fmt::print(stderr, "  try: {}\n", hint);
+}
+
+/// What to do about a command line that was not understood.
+std::string usage_hint(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
+  if (argc < 2 || argv[1][0] == '-') return "liana --help";
+  const std::string nearest = liana::nearest_word(argv[1], verbs);
+  return nearest == argv[1] ? "liana " + nearest + " --help"
+                            : "did you mean 'liana " + nearest + "'? liana --help";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Liana makes plants move like real ones: what is baked is what moves.", "liana"};
+  app.set_version_flag("--version", std::string("liana ") + LIANA_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Example:\n  liana bake data/plants/apple.glb --species apple -o apple.bake\n"
+      "Each verb has its own help: liana bake --help");
+  int exit_code = liana::kSuccess;
+  liana::add_bake_verb(app, exit_code);
+  liana::add_inspect_verb(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    complain(error.what(), usage_hint(app, argc, argv));
+    return liana::kUsageError;
+  } catch (const Error& error) {
+    complain(error.what(), error.hint);
+    return exit_code_of(error.kind);
+  } catch (const std::exception& error) {
+    complain(std::string("stopped by a fault of its own: ") + error.what(),
+             "report it with the command and the file");
+    return liana::kInputError;
+  }
+  return exit_code;
+}
