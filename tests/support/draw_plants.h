@@ -73,15 +73,14 @@ class FakeSimulation : public Simulation {
     scene = backdrop;
     add_plant(plant_, {}, {}, scene);
   }
-  std::vector<const Plant*> plants() const override { return {&plant_}; }
+  size_t plant_count() const override { return 1; }
+  const Plant& plant(size_t) const override { return plant_; }
   void set_grab(size_t, const WorldSpring& grab) override { grab_ = grab; }
   void clear_grab() override { grab_.reset(); }
   SimulationStats stats() const override {
-    return {0.025 * double(steps_), steps_, plant_.particles.size(),
-            plant_.branches.size(), 0,      {{"physics", 0.1}}};
+    return {.time = 0.025 * double(steps_), .steps = steps_, .particles = plant_.particles.size()};
   }
 
-  const Plant& plant() const { return plant_; }
   const std::optional<WorldSpring>& grab() const { return grab_; }
   DrawScene backdrop;  ///< drawn behind the plant
 

@@ -34,28 +34,26 @@ struct Editor : testing::Test {
 };
 
 TEST_F(Editor, PicksTheParticleUnderThePixel) {
-  const std::vector<const Plant*> plants = world.plants();
   for (const size_t i : {0u, 5u, 9u, 13u, 14u}) {
-    const Vec3 pixel = pixel_of(world.plant().motion[i].position);
-    const auto pick = pick_particle(plants, {}, core.camera(), pixel.x(), pixel.y(), 640, 360);
+    const Vec3 pixel = pixel_of(world.plant(0).motion[i].position);
+    const auto pick = pick_particle(world, {}, core.camera(), pixel.x(), pixel.y(), 640, 360);
     ASSERT_TRUE(pick);
     EXPECT_EQ(pick->particle.index(), i);
     EXPECT_LT(pick->on_particle.norm(), 0.01);
   }
-  EXPECT_FALSE(pick_particle(plants, {}, core.camera(), 60, 60, 640, 360));
+  EXPECT_FALSE(pick_particle(world, {}, core.camera(), 60, 60, 640, 360));
 }
 
 TEST_F(Editor, DoesNotPickThroughAWall) {
-  const std::vector<const Plant*> plants = world.plants();
-  const Vec3 pixel = pixel_of(world.plant().motion[5].position);
+  const Vec3 pixel = pixel_of(world.plant(0).motion[5].position);
   const std::vector<DrawMesh> wall{{support::box_mesh({-1, 0, 0.5}, {1, 2, 0.6}), {1, 1, 1}, false, ""}};
-  EXPECT_FALSE(pick_particle(plants, wall, core.camera(), pixel.x(), pixel.y(), 640, 360));
+  EXPECT_FALSE(pick_particle(world, wall, core.camera(), pixel.x(), pixel.y(), 640, 360));
   const std::vector<DrawMesh> behind{{support::box_mesh({-1, 0, -0.6}, {1, 2, -0.5}), {1, 1, 1}, false, ""}};
-  EXPECT_TRUE(pick_particle(plants, behind, core.camera(), pixel.x(), pixel.y(), 640, 360));
+  EXPECT_TRUE(pick_particle(world, behind, core.camera(), pixel.x(), pixel.y(), 640, 360));
 }
 
 TEST_F(Editor, DraggingABranchMovesItToTheMouseAndReleases) {
-  const Vec3 start = world.plant().motion[9].position, pixel = pixel_of(start);
+  const Vec3 start = world.plant(0).motion[9].position, pixel = pixel_of(start);
   press(pixel);
   ASSERT_TRUE(core.grab());
   EXPECT_EQ(core.grab()->particle.index(), 9u);
@@ -63,7 +61,7 @@ TEST_F(Editor, DraggingABranchMovesItToTheMouseAndReleases) {
   EXPECT_GT(world.grab()->stiffness(0, 0), 0);
   move(pixel.x() + 50, pixel.y() - 20);
   for (int i = 0; i < 60; ++i) core.advance(0.025);  // the fake world halves the distance each step
-  const Vec3 reached = pixel_of(world.plant().motion[9].position);
+  const Vec3 reached = pixel_of(world.plant(0).motion[9].position);
   EXPECT_NEAR(reached.x(), pixel.x() + 50, 1e-6);
   EXPECT_NEAR(reached.y(), pixel.y() - 20, 1e-6);
   EXPECT_NEAR(reached.z(), pixel.z(), 1e-9);  // in the plane parallel to the screen
@@ -86,7 +84,7 @@ TEST_F(Editor, DraggingEmptySpaceOrbitsAndLeavesTheWorldAlone) {
 }
 
 TEST_F(Editor, MiddleOrbitsShiftPansAltKeepsFromGrabbing) {
-  const Vec3 on_stem = pixel_of(world.plant().motion[5].position);
+  const Vec3 on_stem = pixel_of(world.plant(0).motion[5].position);
   const auto drag = [&](MouseButton button, bool shift, bool alt) {
     press(on_stem, button, shift, alt);
     move(on_stem.x() + 20, on_stem.y());

@@ -1,0 +1,61 @@
+#include "runtime/growth/anchors.h"
+
+#include <algorithm>
+
+#include "mesher/base/error.h"
+
+namespace liana {
+
+bool Anchors::attach(Plant& plant, ParticleId particle, std::span<const SdfObstacle* const> obstacles) {
+  if (holds(particle)) return true;
+  require(records_.size() == plant.anchors.size(), "all anchors of a climber are its own");
+  const Particle& segment = plant.particles[particle.index()];
+  const Motion& motion = plant.motion[particle.index()];
+  const auto support = closest_support(obstacles, motion.position, segment.half_width + parameters_.touch_gap);
+  if (!support) return false;
+
+  Record record;
+  record.away = motion.orientation.conjugate() * support->normal;
+  record.along = 0;
+  // Roots bridge the gap as it is: holding on does not pull.
+  record.gap = support->distance - segment.half_width;
+  WorldSpring spring;
+  spring.particle = particle;
+  spring.target = support->point;
+  records_.push_back(record);
+  plant.anchors.push_back(spring);
+  held_.resize(std::max(held_.size(), plant.particles.size()), 0);
+  held_[particle.index()] = 1;
+  return true;
+}
+
+void Anchors::update(Plant& plant, double dt_growth) {
+  require(records_.size() == plant.anchors.size(), "all anchors of a climber are its own");
+  size_t kept = 0;
+  for (size_t i = 0; i < records_.size(); ++i) {
+    Record& record = records_[i];
+    WorldSpring& spring = plant.anchors[i];
+    const Particle& segment = plant.particles[spring.particle.index()];
+    const Motion& motion = plant.motion[spring.particle.index()];
+    record.age += dt_growth;
+    const double hard = std::min(1.0, record.age / parameters_.seconds_to_full);
+    const double stiffness = parameters_.stiffness * hard * segment.half_width / young_radius_;
+    spring.on_particle = Vec3(0, record.along, 0) - (segment.half_width + record.gap) * record.away;
+    spring.stiffness = stiffness * Mat3::Identity();
+    spring.damping = parameters_.damping_time * spring.stiffness;
+
+    const Vec3 point = motion.position + motion.orientation * spring.on_particle;
+    if ((point - spring.target).norm() > parameters_.release_distance) {
+      held_[spring.particle.index()] = 0;
+      ++released_;
+      continue;
+    }
+    records_[kept] = record;
+    plant.anchors[kept] = spring;
+    ++kept;
+  }
+  records_.resize(kept);
+  plant.anchors.resize(kept);
+}
+
+}  // namespace liana

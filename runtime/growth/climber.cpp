@@ -1,0 +1,222 @@
+#include "runtime/growth/climber.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesher/base/error.h"
+#include "runtime/growth/branching.h"
+#include "runtime/growth/light.h"
+#include "runtime/growth/thickening.h"
+#include "runtime/sim/rod_section.h"
+
+namespace liana {
+namespace {
+
+constexpr double kGravity = 9.81;          // m/s², that leaves grow their petioles under
+constexpr double kYoungestSegment = 0.25;  // length of a new particle, of a full-grown one's
+constexpr double kThickenEvery = 0.2;      // growth s
+constexpr double kLeafStrand = 0.35;       // of the petiole's radius: what a leaf adds to the stems below
+
+/// Away from the support; away from the stem's underside where there is none.
+Vec3 outward_of(const std::optional<Support>& support, const Vec3& forward, const Vec3& to_sun) {
+  const Vec3 away = support ? support->normal : to_sun;
+  const Vec3 across = away - away.dot(forward) * forward;
+  return across.norm() > 1e-3 ? across.normalized() : forward.unitOrthogonal();
+}
+
+void check(bool sound, const char* what) {
+  if (!sound) throw Error(Error::Kind::Input, what, "the defaults of ClimberParameters grow an ivy");
+}
+
+}  // namespace
+
+Climber::Climber(const ClimberParameters& parameters, const SpeciesLaw& law, const Vec3& seed_position,
+                 uint64_t random_seed)
+    : parameters_(parameters),
+      law_(law),
+      seed_(seed_position),
+      wander_(random_seed, "growth/wander"),
+      branching_(random_seed, "growth/branching"),
+      leafing_(random_seed, "growth/leaves"),
+      leaves_(parameters.leaves, kGravity),
+      anchors_(parameters.anchors, parameters.tip_radius),
+      crowding_(std::max(parameters.branching.room, 0.02)) {
+  const ClimberParameters& p = parameters_;
+  check(seed_position.allFinite(), "a climber's seed is not at a finite place");
+  check(p.elongation > 0 && p.elongation < 1, "a climber's elongation is not between 0 and 1 m/s");
+  check(p.segment_length >= 5e-3 && p.segment_length <= 1, "a climber's segments are not 5 mm to 1 m long");
+  check(p.tip_radius > 1e-5 && p.tip_radius < p.segment_length / 2, "a climber's tip is too thin or too thick");
+  check(p.first_shoots >= 1 && p.first_shoots <= 64, "a climber needs 1 to 64 first shoots");
+  check(p.pipe_exponent >= 1 && p.pipe_exponent <= 4, "a climber's pipe exponent is not between 1 and 4");
+  check(p.leaves.step > 0 && p.leaves.length > 0 && p.leaves.width > 0 && p.leaves.thickness > 0 &&
+            p.leaves.petiole > 0 && p.leaves.petiole_radius > 0 && p.leaves.seconds_to_full > 0 &&
+            p.leaves.variation >= 0 && p.leaves.variation < 1,
+        "a climber's leaves have no size");
+  check(p.branching.variance >= 0 && p.branching.variance <= 1 && p.branching.falloff > 0 && p.branching.falloff <= 1,
+        "a climber's branching variance or falloff is not between 0 and 1");
+  check(p.max_particles >= 1 && p.max_particles <= 1'000'000, "a climber may have 1 to 1,000,000 particles");
+  law_.group("level0"), law_.group("leaf");
+}
+
+GrowthReport Climber::grow(Plant& plant, std::span<const SdfObstacle* const> obstacles, const Vec3& to_sun, double dt) {
+  require(dt >= 0 && dt <= 0.1, "growth goes in steps of at most 0.1 s");
+  const Surroundings around{obstacles, to_sun.normalized(), seed_.y()};
+  if (plant.particles.empty()) germinate(plant, around);
+
+  GrowthReport report;
+  for (size_t i = 0; i < shoots_.size(); ++i)  // grows while it goes on
+    if (shoots_[i].growing && grow_tip(plant, shoots_[i], parameters_, around, wander_, dt)) finish_node(plant, i, around);
+  leaves_.grow(plant, around.to_sun, dt, law_);
+  hold_on_again(plant, around);
+  anchors_.update(plant, dt);
+  if ((since_thickened_ += dt) >= kThickenEvery) {
+    thicken(plant, young_radius_, joint_length_,
+            {parameters_.pipe_exponent, kLeafStrand * parameters_.leaves.petiole_radius, parameters_.thickening},
+            law_.default_material, since_thickened_);
+    since_thickened_ = 0;
+  }
+  recalibrate_changed(plant, report);
+
+  report.tips = std::count_if(shoots_.begin(), shoots_.end(), [](const Shoot& s) { return s.growing; });
+  report.leaves = leaves_.count();
+  report.anchors = anchors_.count();
+  report.released = anchors_.released();
+  return report;
+}
+
+// The first shoot is the trunk, rooted at the seed; the others start at its first head, in a fan along the support.
+void Climber::germinate(Plant& plant, const Surroundings& around) {
+  const auto support = closest_support(around.obstacles, seed_, parameters_.tropisms.search_radius);
+  const Vec3 up = Vec3::UnitY();
+  Vec3 to_support = support ? Vec3(-support->normal) : Vec3::Zero();
+  to_support.y() = 0;
+  const Vec3 direction = (up + to_support).normalized();
+  const Vec3 normal = to_support.isZero(1e-9) ? Vec3(Vec3::UnitZ()) : Vec3(-to_support.normalized());
+  for (unsigned i = 0; i < parameters_.first_shoots; ++i) {
+    // 0, then alternately to the sides: the trunk is the middle one.
+    const unsigned step = (i + 1) / 2, steps = std::max(1u, parameters_.first_shoots / 2);
+    const double course = parameters_.fan * step / steps * (i % 2 ? 1 : -1);
+    Shoot shoot{BranchId(), parameters_.tip_radius, course, parameters_.longest_shoot};
+    if (i == 0) {
+      start_shoot(plant, {ParticleId(), seed_}, BranchId(), direction, shoot);
+    } else {
+      const Vec3 turned = Eigen::AngleAxisd(course, normal) * direction;
+      start_shoot(plant, {ParticleId(0), Vec3(0, plant.particles[0].half_length, 0)}, BranchId(0), turned, shoot);
+    }
+  }
+}
+
+void Climber::start_shoot(Plant& plant, const Attachment& at, BranchId parent, const Vec3& direction, Shoot shoot) {
+  Branch branch;
+  branch.parent = parent;
+  branch.level = parent.valid() ? plant.branches[parent.index()].level + 1 : 0;
+  branch.group = "level" + std::to_string(branch.level);
+  shoot.branch = BranchId(plant.branches.size());
+  plant.branches.push_back(branch);
+  append_stem(plant, shoot, at, Quat::FromTwoVectors(Vec3::UnitY(), direction));
+  shoots_.push_back(shoot);
+}
+
+ParticleId Climber::append_stem(Plant& plant, const Shoot& shoot, const Attachment& at, const Quat& orientation) {
+  // The first particle of a plant is full-grown: it is what the seed was.
+  const double length = parameters_.segment_length * (at.parent.valid() ? kYoungestSegment : 1);
+  const SegmentShape shape{length / 2, shoot.tip_radius, shoot.tip_radius};
+  const ParticleId id = append_segment(plant, shoot.branch, at, shape, orientation);
+  Branch& branch = plant.branches[shoot.branch.index()];
+  branch.length += length;
+  if (branch.particles.size() == 1) branch.material = evaluate(law_.group(branch.group), branch.length);
+
+  young_radius_.resize(plant.particles.size(), 0);
+  joint_length_.resize(plant.particles.size(), 0);
+  young_radius_[id.index()] = shoot.tip_radius;
+  joint_length_[id.index()] = parameters_.segment_length;
+  Particle& particle = plant.particles[id.index()];
+  set_mass(particle, DomainKind::Branch, law_.default_material.density * branch.material.mass_scaling);
+  // For its full length, so that lengthening does not change it.
+  const ElasticMaterial& material = law_.default_material;
+  set_section(particle.joint,
+              rod_section(material.youngs_modulus, material.poisson_ratio, shoot.tip_radius, shoot.tip_radius, 1),
+              parameters_.segment_length, branch.stiffness_scale);
+  if (branch.particles.size() > 1) {
+    const Particle& before = plant.particles[at.parent.index()];
+    particle.mass_damping = before.mass_damping;
+    particle.stiffness_damping = before.stiffness_damping;
+  }
+  return id;
+}
+
+// A particle is full-grown: it holds on, bears a leaf and perhaps lateral shoots, and the tip goes on from its head.
+void Climber::finish_node(Plant& plant, size_t index, const Surroundings& around) {
+  Shoot shoot = shoots_[index];
+  const BranchId branch = shoot.branch;
+  const ParticleId node = plant.branches[branch.index()].particles.back();
+  const Vec3 head = head_of(plant, node), forward = forward_of(plant, node);
+  const auto support = closest_support(around.obstacles, head, parameters_.tropisms.search_radius);
+  const Vec3 outward = outward_of(support, forward, around.to_sun);
+  const Attachment here{node, Vec3(0, plant.particles[node.index()].half_length, 0)};
+
+  shoot.free_length =
+      anchors_.attach(plant, node, around.obstacles) ? 0 : shoot.free_length + parameters_.segment_length;
+  shoot.light += (1 - occlusion(around.obstacles, head + 1e-3 * outward, around.to_sun) - shoot.light) / 3;
+  crowding_.add(head, branch);
+
+  if ((shoot.since_leaf += parameters_.segment_length) >= parameters_.leaves.step &&
+      plant.particles.size() < parameters_.max_particles) {
+    leaves_.sprout(plant, shoot, node, outward, law_, leafing_);
+    shoot.since_leaf = 0;
+    young_radius_.push_back(0);
+    joint_length_.push_back(0);
+  }
+  for (const Bud& bud : breaking_buds(shoot, plant.branches[branch.index()].level, head, forward, outward,
+                                      parameters_.branching, crowding_, branching_))
+    if (plant.particles.size() < parameters_.max_particles)
+      start_shoot(plant, here, branch, bud.direction, {BranchId(), bud.tip_radius, bud.course, shoot.longest / 2, shoot.light});
+
+  shoot.growing = plant.branches[branch.index()].length < shoot.longest &&
+                  shoot.free_length < parameters_.longest_free && plant.particles.size() < parameters_.max_particles;
+  if (shoot.growing) append_stem(plant, shoot, here, plant.motion[node.index()].orientation);
+  shoots_[index] = shoot;
+}
+
+// A few particles a step are looked at again: a stem that was blown against the wall takes root there.
+void Climber::hold_on_again(Plant& plant, const Surroundings& around) {
+  for (size_t looked = 0; looked < plant.particles.size() / 64 + 1; ++looked) {
+    next_hold_ = (next_hold_ + 1) % plant.particles.size();
+    const ParticleId id(next_hold_);
+    const Particle& particle = plant.particles[next_hold_];
+    const bool stem = plant.branches[particle.branch.index()].kind == DomainKind::Branch;
+    const bool grown = 2 * particle.half_length >= parameters_.segment_length * (1 - 1e-9);
+    if (stem && grown && particle.parent.valid()) anchors_.attach(plant, id, around.obstacles);
+  }
+}
+
+void Climber::recalibrate_changed(Plant& plant, GrowthReport& report) {
+  for (const Shoot& shoot : shoots_) {
+    if (!shoot.growing) continue;
+    const Branch& branch = plant.branches[shoot.branch.index()];
+    Particle& tip = plant.particles[branch.particles.back().index()];
+    set_mass(tip, branch.kind, law_.default_material.density * branch.material.mass_scaling);
+  }
+  const std::vector<double> carried = carried_masses(plant);
+  calibrated_.resize(plant.branches.size());
+  for (size_t i = 0; i < plant.branches.size(); ++i) {
+    Branch& branch = plant.branches[i];
+    double mass = 0;
+    for (const ParticleId p : branch.particles) mass += plant.particles[p.index()].mass + carried[p.index()];
+    Calibrated& last = calibrated_[i];
+    const double change = parameters_.recalibration;
+    if (std::abs(branch.length - last.length) <= change * last.length && std::abs(mass - last.mass) <= change * last.mass)
+      continue;
+    const double scaling = branch.material.mass_scaling;
+    branch.material = evaluate(law_.group(branch.group), branch.length);
+    for (const ParticleId p : branch.particles) {
+      plant.particles[p.index()].mass *= branch.material.mass_scaling / scaling;
+      plant.particles[p.index()].inertia *= branch.material.mass_scaling / scaling;
+    }
+    last = {branch.length, mass * branch.material.mass_scaling / scaling};
+    if (!recalibrate(plant, BranchId(i), carried, chain_)) ++report.out_of_range;
+    ++report.recalibrated;
+  }
+}
+
+}  // namespace liana

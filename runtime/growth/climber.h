@@ -1,0 +1,66 @@
+// A climbing plant that grows from a seed: [Haedrich17] §4.2-4.3 on oriented particles that swing as their law says.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "materials/law/species_law.h"
+#include "runtime/growth/anchors.h"
+#include "runtime/growth/crowding.h"
+#include "runtime/growth/leaves.h"
+#include "runtime/growth/segments.h"
+#include "runtime/growth/shoot_growth.h"
+#include "runtime/sim/calibration.h"
+
+namespace liana {
+
+struct GrowthReport {
+  size_t tips = 0;          ///< shoots that still grow
+  size_t leaves = 0;
+  size_t anchors = 0;
+  size_t released = 0;      ///< anchors torn off so far
+  size_t recalibrated = 0;  ///< branches calibrated in this call
+  size_t out_of_range = 0;  ///< of these, how many the time step cannot swing as fast as their law says
+};
+
+/// Owns what growth needs to know besides the plant. One climber grows one plant, from empty, and is the only one that
+/// adds particles, branches or anchors to it. Deterministic: the same seed and calls grow the same plant.
+class Climber {
+ public:
+  /// seed_position (m) is on the ground, which is taken to be level there. Throws Error{Input} for parameters out of
+  /// range or a law without the groups "level0" and "leaf".
+  Climber(const ClimberParameters& parameters, const SpeciesLaw& law, const Vec3& seed_position, uint64_t random_seed);
+
+  /// Lets the plant grow by dt_growth (growth s, at most 0.1) from its present, moving state: call it between time steps
+  /// with a multiple of their dt. to_sun need not be unit. The plant's time scheme must be set before.
+  GrowthReport grow(Plant& plant, std::span<const SdfObstacle* const> obstacles, const Vec3& to_sun, double dt_growth);
+
+  const ClimberParameters& parameters() const { return parameters_; }
+
+ private:
+  struct Calibrated {
+    double length = 0, mass = 0;  // of the branch and what it carries, when last calibrated
+  };
+  void germinate(Plant& plant, const Surroundings& around);
+  void start_shoot(Plant& plant, const Attachment& at, BranchId parent, const Vec3& direction, Shoot shoot);
+  ParticleId append_stem(Plant& plant, const Shoot& shoot, const Attachment& at, const Quat& orientation);
+  void finish_node(Plant& plant, size_t shoot, const Surroundings& around);
+  void hold_on_again(Plant& plant, const Surroundings& around);
+  void recalibrate_changed(Plant& plant, GrowthReport& report);
+
+  ClimberParameters parameters_;
+  SpeciesLaw law_;
+  Vec3 seed_;
+  Random wander_, branching_, leafing_;
+  std::vector<Shoot> shoots_;
+  Leaves leaves_;
+  Anchors anchors_;
+  Crowding crowding_;
+  std::vector<double> young_radius_, joint_length_;  // m, per particle
+  std::vector<Calibrated> calibrated_;               // per branch
+  HeldChain chain_;
+  size_t next_hold_ = 0;       // particle looked at next for a new anchor
+  double since_thickened_ = 0; // growth s
+};
+
+}  // namespace liana

@@ -1,0 +1,100 @@
+#include "runtime/growth/leaves.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/growth/segments.h"
+#include "runtime/growth/tropisms.h"
+#include "runtime/sim/rod_section.h"
+
+namespace liana {
+namespace {
+
+constexpr double kYoungest = 0.2;  // size of a leaf when it unfolds, of its full size
+
+/// Local +Y along the midrib, +Z (the upper side) as near to `face` as that allows.
+Quat leaf_frame(const Vec3& midrib, const Vec3& face) {
+  Mat3 axes;
+  axes.col(1) = midrib.normalized();
+  const Vec3 across = axes.col(1).cross(face);
+  axes.col(0) = across.norm() > 1e-6 ? across.normalized() : axes.col(1).unitOrthogonal();
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  return Quat(axes);
+}
+
+}  // namespace
+
+BranchId Leaves::sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3& outward, const SpeciesLaw& law,
+                        Random& random) {
+  const LeafParameters& p = parameters_;
+  const Vec3 forward = forward_of(plant, node);
+  Vec3 side = outward.cross(forward);
+  side = side.norm() > 1e-6 ? side.normalized() : forward.unitOrthogonal();
+  side = Eigen::AngleAxisd(p.divergence * shoot.leaves++, forward) * side;
+  const Vec3 vary = p.variation * Vec3(random.normal(), random.normal(), random.normal());
+  // Sideways from the stem, away from the wall, the tip hanging a little.
+  Vec3 midrib = side + 0.35 * forward + vary;
+  const double away = midrib.dot(outward);
+  midrib += (std::max(away, 0.75) - away) * outward - 0.35 * Vec3::UnitY();
+
+  const double size = 1 + p.variation * random.uniform(-1, 1);
+  Leaf leaf{BranchId(plant.branches.size()), size * p.length, size * p.width, outward};
+  Branch branch;
+  branch.parent = shoot.branch;
+  branch.kind = DomainKind::Leaf;
+  branch.level = plant.branches[shoot.branch.index()].level + 1;
+  branch.group = "leaf";
+  plant.branches.push_back(branch);
+  const SegmentShape shape{kYoungest * leaf.full_length / 2, kYoungest * leaf.full_width / 2, p.thickness / 2,
+                           kYoungest * p.petiole};
+  const Attachment at{node, Vec3(0, plant.particles[node.index()].half_length, 0)};
+  const ParticleId blade = append_segment(plant, leaf.branch, at, shape, leaf_frame(midrib, outward));
+
+  const ElasticMaterial& material = law.default_material;
+  set_section(plant.particles[blade.index()].joint,
+              rod_section(material.youngs_modulus, material.poisson_ratio, p.petiole_radius, p.petiole_radius, 1),
+              p.petiole);
+  leaves_.push_back(leaf);
+  resize(plant, leaf, kYoungest, law);
+  return leaf.branch;
+}
+
+void Leaves::resize(Plant& plant, const Leaf& leaf, double size, const SpeciesLaw& law) const {
+  Branch& branch = plant.branches[leaf.branch.index()];
+  const ParticleId id = branch.particles.front();
+  Particle& blade = plant.particles[id.index()];
+  const Vec3 joint = joint_point_of(plant, id);
+  blade.half_length = size * leaf.full_length / 2;
+  blade.half_width = size * leaf.full_width / 2;
+  blade.joint.on_self = {0, -blade.half_length - size * parameters_.petiole, 0};
+  Motion& motion = plant.motion[id.index()];
+  motion.position = joint - motion.orientation * blade.joint.on_self;
+  branch.length = size * (leaf.full_length + parameters_.petiole);
+  branch.material = evaluate(law.group(branch.group), branch.length);
+  set_mass(blade, DomainKind::Leaf, law.default_material.density * branch.material.mass_scaling);
+
+  // A leaf grows into the shape that its weight gives it: at rest the joint carries the blade.
+  const Quat parent = plant.motion[blade.parent.index()].orientation;
+  const Mat3 frame = (parent * blade.joint.rest).toRotationMatrix();
+  const Vec3 lift = frame.transpose() * Vec3(0, blade.mass * gravity_, 0);
+  blade.joint.rest_force = lift;
+  blade.joint.rest_moment = (-blade.joint.on_self).cross(lift);
+}
+
+void Leaves::grow(Plant& plant, const Vec3& to_sun, double dt, const SpeciesLaw& law) {
+  const double full = parameters_.seconds_to_full;
+  for (size_t i = first_growing_; i < leaves_.size(); ++i) {
+    Leaf& leaf = leaves_[i];
+    leaf.age += dt;
+    const double t = std::min(1.0, leaf.age / full);
+    const ParticleId blade = plant.branches[leaf.branch.index()].particles.front();
+    const Vec3 face = plant.motion[blade.index()].orientation * Vec3::UnitZ();
+    // To the light, but not into the wall.
+    const Vec3 bright = (to_sun + leaf.outward).stableNormalized();
+    turn_segment(plant, blade, phototropism(face, bright, 0, parameters_.phototropism * dt));
+    resize(plant, leaf, kYoungest + (1 - kYoungest) * t * t * (3 - 2 * t), law);
+    if (t >= 1 && i == first_growing_) ++first_growing_;
+  }
+}
+
+}  // namespace liana

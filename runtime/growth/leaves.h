@@ -1,0 +1,37 @@
+// Leaves: one particle each, on a petiole, put along a shoot by phyllotaxis; they grow and turn to the light.
+#pragma once
+
+#include <vector>
+
+#include "runtime/growth/shoot_growth.h"
+
+namespace liana {
+
+class Leaves {
+ public:
+  explicit Leaves(const LeafParameters& parameters, double gravity) : parameters_(parameters), gravity_(gravity) {}
+
+  /// A young leaf at the head of a shoot's full-grown particle. `outward` is the direction away from the support.
+  BranchId sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3& outward, const SpeciesLaw& law, Random& random);
+
+  /// Enlarges and turns the leaves that are not full-grown.
+  void grow(Plant& plant, const Vec3& to_sun, double dt, const SpeciesLaw& law);
+
+  size_t count() const { return leaves_.size(); }
+
+ private:
+  struct Leaf {
+    BranchId branch;
+    double full_length, full_width;  // m
+    Vec3 outward;                    // unit
+    double age = 0;                  // growth s
+  };
+  void resize(Plant& plant, const Leaf& leaf, double size, const SpeciesLaw& law) const;
+
+  LeafParameters parameters_;
+  double gravity_;
+  std::vector<Leaf> leaves_;
+  size_t first_growing_ = 0;  // leaves of one age sprout in order, so the grown ones come first
+};
+
+}  // namespace liana

@@ -1,0 +1,87 @@
+#include "runtime/growth/shoot_growth.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/growth/segments.h"
+#include "runtime/growth/tropisms.h"
+
+namespace liana {
+namespace {
+
+/// How far out of what solid must the head go? The deepest one decides.
+Vec3 way_out(const Vec3& head, double radius, const Surroundings& around) {
+  double deepest = std::min(0.0, head.y() - around.ground_height - radius);
+  Vec3 way = -deepest * Vec3::UnitY();
+  for (const SdfObstacle* obstacle : around.obstacles) {
+    if (obstacle->distance(head) >= radius + deepest) continue;
+    const SurfacePoint closest = obstacle->closest_point(head);
+    const double gap = closest.distance - radius;
+    if (gap >= deepest) continue;
+    deepest = gap;
+    const bool touching = std::abs(closest.distance) < 1e-9;
+    way = -gap * (touching ? closest.normal : Vec3((head - closest.point) / closest.distance));
+  }
+  return way;
+}
+
+}  // namespace
+
+Vec3 course_on_surface(const Vec3& normal, double course) {
+  const Vec3 up = Vec3::UnitY() - normal.y() * normal;
+  if (up.norm() < 0.3) return Vec3::Zero();
+  return Eigen::AngleAxisd(course, normal) * up.normalized();
+}
+
+Quat tip_turn(const Shoot& shoot, const Vec3& forward, double radius,
+              const std::optional<Support>& support, const Surroundings& around, const TropismParameters& parameters,
+              Random& random, double dt) {
+  const double noise = parameters.wander * std::sqrt(dt) * random.normal();
+  if (!support) {
+    const Quat light = phototropism(forward, around.to_sun, 1 - shoot.light, parameters.phototropism * dt);
+    const Quat up = steering(forward, Vec3::UnitY(), parameters.climbing * dt);
+    return Quat(Eigen::AngleAxisd(noise, around.to_sun.unitOrthogonal())) * up * light;
+  }
+  const Vec3& normal = support->normal;
+  const double gap = support->distance - radius - parameters.cling_gap;
+  const double ease = std::clamp(gap / parameters.approach_length, -1.0, 1.0);
+  const Vec3 course = course_on_surface(normal, shoot.course);
+  const Vec3 square_turn = course.isZero(0) ? normal.unitOrthogonal() : Vec3(course.cross(normal));
+  const Quat adapt = surface_adaption(forward, -normal, ease * std::sin(parameters.approach_angle),
+                                      parameters.surface_adaption * dt, square_turn);
+  // A tip that holds on follows the light along the surface only: it does not let go for more.
+  const Vec3 light_on_surface = around.to_sun - around.to_sun.dot(normal) * normal;
+  const Quat light = phototropism(forward, light_on_surface.stableNormalized(), 1 - shoot.light,
+                                  parameters.phototropism * dt * light_on_surface.norm());
+  const Quat climb = steering(forward, course, parameters.climbing * dt);
+  return Quat(Eigen::AngleAxisd(noise, normal)) * climb * adapt * light;  // Eq. 8 with two rotations more
+}
+
+bool grow_tip(Plant& plant, const Shoot& shoot, const ClimberParameters& parameters, const Surroundings& around,
+              Random& random, double dt) {
+  Branch& branch = plant.branches[shoot.branch.index()];
+  const ParticleId tip = branch.particles.back();
+  Particle& particle = plant.particles[tip.index()];
+
+  const Vec3 head = head_of(plant, tip);
+  const auto support = closest_support(around.obstacles, head, parameters.tropisms.search_radius);
+  turn_segment(plant, tip, tip_turn(shoot, forward_of(plant, tip), particle.half_width, support, around,
+                                    parameters.tropisms, random, dt));
+
+  const double lit = parameters.shade + (1 - parameters.shade) * shoot.light;
+  const double vigour = std::clamp(4 * (1 - branch.length / shoot.longest), 0.25, 1.0);  // the last quarter is slow
+  const double by = std::min(parameters.elongation * lit * vigour * dt,
+                             parameters.segment_length - 2 * particle.half_length);
+  lengthen_segment(plant, tip, by);
+  branch.length += by;
+
+  const Vec3 way = way_out(head_of(plant, tip), particle.half_width, around);
+  if (!way.isZero(0)) {
+    const Vec3 from = joint_point_of(plant, tip);
+    const Vec3 free = head_of(plant, tip) + way - from;
+    turn_segment(plant, tip, Quat::FromTwoVectors(forward_of(plant, tip), free));
+  }
+  return 2 * particle.half_length >= parameters.segment_length * (1 - 1e-9);
+}
+
+}  // namespace liana
