@@ -56,7 +56,7 @@ Cholesky::Cholesky(const FreeMatrix& matrix) : state_(std::make_unique<State>())
   a.p = const_cast<int*>(matrix.start.data());
   a.i = const_cast<int*>(matrix.row.data());
   a.x = const_cast<double*>(matrix.value.data());
-  a.stype = -1;
+  a.stype = 1;
   a.itype = CHOLMOD_INT;
   a.xtype = CHOLMOD_REAL;
   a.dtype = CHOLMOD_DOUBLE;

@@ -36,7 +36,7 @@ std::vector<uint32_t> order_nodes(const System& system, const std::vector<uint8_
   return ordered;
 }
 
-/// One block of the permuted lower triangle.
+/// One block of the permuted upper triangle.
 struct Block {
   uint32_t place;  ///< of its row node in the order
   uint32_t entry;  ///< of the system
@@ -53,16 +53,14 @@ FreeMatrix free_matrix(const System& system, std::span<const uint8_t> held, doub
   std::vector<uint32_t> place(system.nodes(), kNone);
   for (uint32_t p = 0; p < order.size(); ++p) place[order[p]] = p;
 
-  // Blocks by column: visiting rows in ascending place, as columns of the transpose, leaves each list sorted.
   std::vector<std::vector<Block>> columns(order.size());
   for (std::vector<Block>& c : columns) c.reserve(24);
-  std::vector<uint32_t> count(order.size() + 1, 0);
   for (uint32_t column = 0; column < system.nodes(); ++column) {
     if (place[column] == kNone) continue;
     for (uint32_t e = system.start[column]; e < system.start[column + 1]; ++e) {
       const uint32_t p = place[system.row[e]], q = place[column];
       if (p == kNone) continue;
-      columns[std::min(p, q)].push_back({std::max(p, q), e, p < q});
+      columns[std::max(p, q)].push_back({std::min(p, q), e, p > q});
     }
   }
 
@@ -83,7 +81,7 @@ FreeMatrix free_matrix(const System& system, std::span<const uint8_t> held, doub
         uint32_t row = first[block.place];
         for (int i = 0; i < 3; ++i) {
           if (held[3 * order[block.place] + i]) continue;
-          if (block.place != q || i >= j) {
+          if (block.place != q || i <= j) {
             const double m = i == j ? shift * system.mass[block.entry] : 0;
             matrix.row.push_back(static_cast<int>(row));
             matrix.value.push_back((block.transposed ? K(j, i) : K(i, j)) + m);

@@ -8,7 +8,7 @@
 
 namespace liana {
 
-/// Lower triangle, compressed columns, rows ascending.
+/// Upper triangle, compressed columns, rows ascending: what CHOLMOD factors without a transpose.
 struct FreeMatrix {
   std::vector<int> start, row;
   std::vector<double> value;

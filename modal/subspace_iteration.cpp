@@ -46,13 +46,13 @@ class SubspaceIteration {
     for (result.iterations = 1; result.iterations <= options_.max_iterations; ++result.iterations) {
       solve();
       Y_mass_ = system_.multiply_mass(Y_);
-      if (result.iterations == 1) sway(result);
+      if (result.iterations == 1 && can_sway_) sway(result);
       rayleigh_ritz(result, std::min<int>(modes, X_.cols()));
       if (X_.cols() >= modes && result.residual < options_.tolerance) {
         result.converged = true;
         break;
       }
-      if (result.iterations == 1) refresh_far_vectors(modes, result);
+      if (result.iterations == 1 && can_sway_) refresh_far_vectors(modes, result);
     }
     result.eigenvalues = eigenvalues_.head(modes).array() - options_.shift;
     result.vectors = X_.leftCols(modes);
@@ -69,8 +69,11 @@ class SubspaceIteration {
 
   void start_vectors(int width) {
     X_ = random_vectors(width, 0);
-    for (int c = 0; c < 3; ++c) X_.col(c).setZero();
-    for (const uint32_t dof : matrix_.dof) X_(dof, dof % 3) = 1;
+    NodalVectors translations = NodalVectors::Zero(X_.rows(), 3);
+    for (const uint32_t dof : matrix_.dof) translations(dof, dof % 3) = 1;
+    can_sway_ = (translations.colwise().squaredNorm().array() > 0).all();
+    for (int c = 0; c < 3; ++c)  // an axis that is held everywhere starts at random
+      if (translations.col(c).squaredNorm() > 0) X_.col(c) = translations.col(c);
     X_mass_ = system_.multiply_mass(X_);
   }
 
@@ -144,6 +147,7 @@ class SubspaceIteration {
   NodalVectors X_, X_mass_, Y_, Y_mass_;
   Dense buffer_;
   Eigen::VectorXd eigenvalues_;
+  bool can_sway_ = false;  // no axis is held everywhere
 };
 
 }  // namespace

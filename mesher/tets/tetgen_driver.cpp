@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <mutex>
 #include <numeric>
 
@@ -95,6 +96,10 @@ TetGenResult run_tetgen(std::span<const Vec3> positions, std::span<const Triangl
   require(behavior.parse_commandline(switches.data()), "TetGen refuses its switches");
   behavior.optscheme = polish == Polish::Flips ? 1 : 7;
   behavior.no_sort = 1;
+  // Memory in blocks of the mesh's size; TetGen's default blocks spend a fifth of a small domain's time in page faults.
+  const int block = std::clamp(static_cast<int>(2 * positions.size()), 64, 8188);
+  behavior.vertexperblock = behavior.shellfaceperblock = block;
+  behavior.tetrahedraperblock = 4 * block;
   behavior.brio_hilbert = 0;
   try {
     mesh_volume(behavior, in, out);

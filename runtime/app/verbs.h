@@ -17,6 +17,5 @@ enum ExitCode : int {
 
 void add_bake_verb(CLI::App& app, int& exit_code);
 void add_inspect_verb(CLI::App& app, int& exit_code);
-void add_simulate_verb(CLI::App& app, int& exit_code);
 
 }  // namespace liana

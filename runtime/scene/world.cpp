@@ -102,14 +102,20 @@ void World::step_inhabitant(size_t index) {
   });
 }
 
+void World::draw(DrawScene& scene) const { add_to(scene, false); }
+
 DrawScene World::drawing(bool names) const {
-  DrawScene drawing;
+  DrawScene scene;
+  add_to(scene, names);
+  return scene;
+}
+
+void World::add_to(DrawScene& scene, bool names) const {
   for (const auto& inhabitant : inhabitants_)
-    add_plant(inhabitant->plant, inhabitant->look, {.names = names}, drawing);
+    add_plant(inhabitant->plant, inhabitant->look, {.names = names}, scene);
   for (const SceneObstacle& obstacle : scene_.obstacles)
-    drawing.meshes.push_back({obstacle.mesh, obstacle.color, obstacle.bricks, obstacle.name});
-  drawing.to_sun = scene_.to_sun.normalized();
-  return drawing;
+    scene.meshes.push_back({obstacle.mesh, obstacle.color, obstacle.bricks, obstacle.name});
+  scene.to_sun = scene_.to_sun.normalized();
 }
 
 Camera World::camera() const {
@@ -146,11 +152,24 @@ WorldReport World::report() const {
   return total;
 }
 
+std::vector<const Plant*> World::plants() const {
+  std::vector<const Plant*> plants;
+  for (const auto& inhabitant : inhabitants_) plants.push_back(&inhabitant->plant);
+  return plants;
+}
+
 SimulationStats World::stats() const {
   const WorldReport now = report();
-  return {.time = time(), .steps = steps_, .particles = now.particles, .anchors = now.anchors,
-          .growth_ms = 1e3 * last_step_.growth, .collision_ms = 1e3 * last_step_.collision,
-          .physics_ms = 1e3 * last_step_.physics, .redone_steps = now.redone_steps};
+  SimulationStats stats;
+  stats.time = time();
+  stats.steps = steps_;
+  stats.particles = now.particles;
+  stats.anchors = now.anchors;
+  for (const auto& inhabitant : inhabitants_) stats.branches += inhabitant->plant.branches.size();
+  stats.stage_ms = {{"growth", 1e3 * last_step_.growth},
+                    {"collision", 1e3 * last_step_.collision},
+                    {"physics", 1e3 * last_step_.physics}};
+  return stats;
 }
 
 uint64_t World::state_hash() const {

@@ -38,9 +38,8 @@ class World final : public Simulation {
 
   void step() override;
   double time_step() const override { return scene_.time_step; }
-  void draw(DrawScene& scene) const override { scene = drawing(); }
-  size_t plant_count() const override { return inhabitants_.size(); }
-  const Plant& plant(size_t i) const override { return inhabitants_[i]->plant; }
+  void draw(DrawScene& scene) const override;
+  std::vector<const Plant*> plants() const override;
   void set_grab(size_t plant, const WorldSpring& spring) override;
   void clear_grab() override { grabbed_.reset(); }
   SimulationStats stats() const override;
@@ -73,6 +72,7 @@ class World final : public Simulation {
   void add_baked(const ScenePlant& entry);
   void add_climber(const SceneClimber& entry, uint64_t seed);
   void step_inhabitant(size_t index);
+  void add_to(DrawScene& scene, bool names) const;
 
   Scene scene_;
   unsigned threads_;

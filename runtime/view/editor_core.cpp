@@ -103,10 +103,9 @@ void EditorCore::on(const ResizeEvent& event) {
 }
 
 bool EditorCore::try_grab(double x, double y) {
-  const std::vector<const Plant*> plants = simulation_.plants();
-  grab_ = pick_particle(plants, scene().meshes, camera_, x, y, width_, height_);
+  grab_ = pick_particle(simulation_, scene().meshes, camera_, x, y, width_, height_);
   if (!grab_) return false;
-  spring_ = grab_spring(*plants[grab_->plant], *grab_, simulation_.time_step());
+  spring_ = grab_spring(simulation_.plant(grab_->plant), *grab_, simulation_.time_step());
   simulation_.set_grab(grab_->plant, spring_);
   return true;
 }

@@ -28,11 +28,13 @@ void draw_stats(const OverlayText& text, float margin) {
     row("time", "%.2f s", text.stats.time);
     row("steps", "%zu", text.stats.steps);
     row("particles", "%zu", text.stats.particles);
-    row("branches", "%zu", text.stats.branches);
     row("anchors", "%zu", text.stats.anchors);
     row("frames/s", "%.1f", text.frames_per_second);
     row("draw", "%.1f ms", text.draw_ms);
-    for (const auto& [stage, ms] : text.stats.stage_ms) row(stage.c_str(), "%.2f ms", ms);
+    row("physics", "%.2f ms", text.stats.physics_ms);
+    row("growth", "%.2f ms", text.stats.growth_ms);
+    row("collision", "%.2f ms", text.stats.collision_ms);
+    if (text.stats.redone_steps > 0) row("redone", "%zu steps", text.stats.redone_steps);
     ImGui::EndTable();
   }
   ImGui::End();

@@ -37,17 +37,18 @@ Passing closest_passing(const Ray& ray, const Vec3& start, const Vec3& end) {
   return {along, s, (offset + s * axis - along * ray.direction).norm()};
 }
 
-std::optional<Pick> pick_particle(std::span<const Plant* const> plants, std::span<const DrawMesh> obstacles,
+std::optional<Pick> pick_particle(const Simulation& simulation, std::span<const DrawMesh> obstacles,
                                   const Camera& camera, double x, double y, int width, int height,
                                   double tolerance) {
   const Ray ray = camera.ray(x, y, width, height);
   const double wall = first_hit(ray, obstacles);
   std::optional<Pick> best;
   double best_miss = tolerance, best_along = std::numeric_limits<double>::infinity();
-  for (size_t p = 0; p < plants.size(); ++p) {
-    for (size_t i = 0; i < plants[p]->particles.size(); ++i) {
-      const Particle& particle = plants[p]->particles[i];
-      const Motion& motion = plants[p]->motion[i];
+  for (size_t p = 0; p < simulation.plant_count(); ++p) {
+    const Plant& plant = simulation.plant(p);
+    for (size_t i = 0; i < plant.particles.size(); ++i) {
+      const Particle& particle = plant.particles[i];
+      const Motion& motion = plant.motion[i];
       const Vec3 half = motion.orientation * Vec3(0, particle.half_length, 0);
       const Passing passing = closest_passing(ray, motion.position - half, motion.position + half);
       const double depth = passing.along_ray * ray.direction.dot(camera.forward());

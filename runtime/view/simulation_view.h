@@ -1,9 +1,5 @@
-// What the editor needs of a simulated world.
+// What the editor window needs of a simulation.
 #pragma once
-
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "runtime/sim/plant.h"
 #include "runtime/view/draw_scene.h"
@@ -12,19 +8,21 @@ namespace liana {
 
 struct SimulationStats {
   double time = 0;  ///< s, simulated
-  size_t steps = 0, particles = 0, branches = 0, anchors = 0;
-  std::vector<std::pair<std::string, double>> stage_ms;  ///< of the last step: "physics", "growth", ...
+  size_t steps = 0, particles = 0, anchors = 0;
+  double growth_ms = 0, collision_ms = 0, physics_ms = 0;  ///< of the last step
+  size_t redone_steps = 0;                                 ///< so far; 0 in normal motion
 };
 
 class Simulation {
  public:
   virtual ~Simulation() = default;
   virtual void step() = 0;
-  virtual double time_step() const = 0;                  ///< s
-  virtual void draw(DrawScene& scene) const = 0;         ///< appends to the scene, sets its sun
-  virtual std::vector<const Plant*> plants() const = 0;  ///< valid until the next step
-  /// From now on each step pulls at a particle of plants()[plant]; replaces the grab before.
-  virtual void set_grab(size_t plant, const WorldSpring& grab) = 0;
+  virtual double time_step() const = 0;  ///< s
+  virtual void draw(DrawScene& scene) const = 0;
+  virtual size_t plant_count() const = 0;
+  virtual const Plant& plant(size_t index) const = 0;
+  /// Holds a point of one plant until cleared; the spring is kept over steps and replaced by the next call.
+  virtual void set_grab(size_t plant, const WorldSpring& spring) = 0;
   virtual void clear_grab() = 0;
   virtual SimulationStats stats() const = 0;
 };
