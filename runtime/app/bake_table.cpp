@@ -55,9 +55,10 @@ std::string bake_table(const Bake& bake) {
 }
 
 std::string domain_table(const Bake& bake) {
-  constexpr const char* kLine = "{:>5}  {:<20} {:>6}  {:<7} {:<8} {:>9} {:>10} {:>9} {:>9} {:>8}  {}\n";
+  constexpr const char* kLine =
+      "{:>5}  {:<20} {:>6}  {:<7} {:<8} {:>9} {:>10} {:>9} {:>9} {:>8} {:>10}  {}\n";
   std::string text = fmt::format(kLine, "id", "name", "parent", "kind", "group", "length, m", "mass, kg",
-                                 "nu0, Hz", "nu, Hz", "xi", "made solid by");
+                                 "nu0, Hz", "nu, Hz", "xi", "stiff/soft", "made solid by");
   const auto number = [](double value) { return fmt::format("{:.4g}", value); };
   for (size_t id = 0; id < bake.domains.size(); ++id) {
     const BakedDomain& domain = bake.domains[id];
@@ -65,7 +66,7 @@ std::string domain_table(const Bake& bake) {
         fmt::format(kLine, id, domain.name, domain.parent.valid() ? std::to_string(domain.parent.value) : "-",
                     kind_name(domain.kind), domain.group, number(domain.length), number(domain.mass),
                     number(domain.default_frequency), number(domain.material.frequency),
-                    number(domain.material.damping_factor), domain.route);
+                    number(domain.material.damping_factor), number(domain.stiffness_ratio), domain.route);
   }
   return text;
 }

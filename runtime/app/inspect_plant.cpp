@@ -39,6 +39,11 @@ struct Row {
   double least = 1e300, most = 0;  // m, diagonals
 };
 
+std::string size_range(const Row& row) {
+  const std::string least = fmt::format("{:.3g}", row.least), most = fmt::format("{:.3g}", row.most);
+  return least == most ? least : least + "-" + most;
+}
+
 std::string summary(const SegmentedPlant& plant) {
   std::map<std::tuple<int, DomainKind, std::string>, Row> rows;
   for (const Domain& domain : plant.domains) {
@@ -54,8 +59,7 @@ std::string summary(const SegmentedPlant& plant) {
   for (const auto& [key, row] : rows) {
     const auto& [level, kind, group] = key;
     text += fmt::format(kLine, level, kind == DomainKind::Leaf ? "leaf" : "branch", group, row.count,
-                        row.triangles, fmt::format("{:.3g}-{:.3g}", row.least, row.most),
-                        fmt::format("{}/{}", row.closed, row.count));
+                        row.triangles, size_range(row), fmt::format("{}/{}", row.closed, row.count));
   }
   return text;
 }

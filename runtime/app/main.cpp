@@ -31,14 +31,16 @@ void complain(const std::string& what, const std::string& hint) {
   if (!hint.empty()) fmt::print(stderr, "  try: {}\n", hint);
 }
 
-/// What to do about a command line that was not understood.
-std::string usage_hint(const CLI::App& app, int argc, char** argv) {
+/// Says what is wrong with a command line, naming the verb that was probably meant.
+void complain_of_usage(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return complain(error.what(), "liana --help");
+  const std::string given = argv[1];
   std::vector<std::string> verbs;
   for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
-  if (argc < 2 || argv[1][0] == '-') return "liana --help";
-  const std::string nearest = liana::nearest_word(argv[1], verbs);
-  return nearest == argv[1] ? "liana " + nearest + " --help"
-                            : "did you mean 'liana " + nearest + "'? liana --help";
+  const std::string nearest = liana::nearest_word(given, verbs);
+  if (nearest == given) return complain(error.what(), "liana " + given + " --help");
+  complain("there is no verb '" + given + "'",
+           "did you mean 'liana " + nearest + "'? liana --help lists all");
 }
 
 }  // namespace
@@ -48,7 +50,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("liana ") + LIANA_VERSION);
   app.require_subcommand(1);
   app.footer(
-      "Example:\n  liana bake data/plants/apple.glb --species apple -o apple.bake\n"
+      "Example:\n  liana bake data/plants/apple_small.glb --species apple -o apple.bake\n"
       "Each verb has its own help: liana bake --help");
   int exit_code = liana::kSuccess;
   liana::add_bake_verb(app, exit_code);
@@ -57,7 +59,7 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    complain(error.what(), usage_hint(app, argc, argv));
+    complain_of_usage(app, error, argc, argv);
     return liana::kUsageError;
   } catch (const Error& error) {
     complain(error.what(), error.hint);

@@ -81,22 +81,26 @@ void add_bake_verb(CLI::App& app, int& exit_code) {
       ->required();
   verb->add_option("-s,--species", arguments->species,
                    "A preset's name (see liana inspect --species) or a .toml file")
-      ->required();
+      ->required()
+      ->option_text("NAME");
   verb->add_option("-o,--output", arguments->output, "The bake to write [the plant's name with .bake, here]");
   verb->add_option("--report", arguments->report, "Also write what was found as JSON");
   verb->add_option("--set", arguments->overrides,
-                   "Change a number of the species: level0.reference_frequency=1.2")
-      ->allow_extra_args(false);
+                   "Change a number of the species, as level0.reference_frequency=1.2; repeatable")
+      ->allow_extra_args(false)
+      ->option_text("KEY=VALUE");
   verb->add_option("--element", arguments->options.element,
                    "T10 (accurate) or T4 (far too stiff: for comparison)")
       ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Element>{{"T10", Element::T10}, {"T4", Element::T4}}, CLI::ignore_case));
+          std::map<std::string, Element>{{"T10", Element::T10}, {"T4", Element::T4}}, CLI::ignore_case))
+      ->option_text("T10|T4");
   verb->add_option("--threads", arguments->options.threads, "Threads to use [all cores]")
-      ->check(CLI::Range(0, 1024));
+      ->check(CLI::Range(0, 1024))
+      ->option_text("N");
   verb->add_flag("--strict", arguments->options.strict, "Stop at the first domain that cannot be made solid");
   verb->footer(
       "Example:\n"
-      "  liana bake data/plants/apple.glb --species apple -o apple.bake --report report.json\n\n"
+      "  liana bake data/plants/apple_small.glb --species apple -o apple.bake --report report.json\n\n"
       "Exit code: 0 baked, 1 bad input, 2 bad command line, 3 baked but for some domains, 130 stopped by "
       "Ctrl-C");
   verb->callback([arguments, &exit_code] { exit_code = bake(*arguments); });

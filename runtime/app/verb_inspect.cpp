@@ -36,7 +36,7 @@ void add_inspect_verb(CLI::App& app, int&) {
   verb->add_flag("--species", arguments->species, "List the species presets, or show the one named");
   verb->footer(
       "Examples:\n"
-      "  liana inspect data/plants/apple.glb\n"
+      "  liana inspect data/plants/apple_small.glb\n"
       "  liana inspect apple.bake --domains\n"
       "  liana inspect --species apple");
   verb->callback([arguments] { inspect(*arguments); });
