@@ -5,7 +5,7 @@
 #include <mutex>
 #include <string>
 
-#include "materials/pipeline/stopwatch.h"
+#include "mesher/base/stopwatch.h"
 #include "mesher/base/progress.h"
 
 namespace liana {
