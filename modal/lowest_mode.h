@@ -1,38 +1,43 @@
 // K x = ω² M x for the lowest modes of one solid domain, held at its root, carrying point masses.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
 #include "mesher/base/elastic_material.h"
 #include "mesher/tets/tet_mesh.h"
+#include "modal/carried_mass.h"
+#include "modal/node_mesh.h"
 
 namespace liana {
-
-/// The mass of everything that hangs on the domain at one place, lumped on the vertices nearest to it.
-struct CarriedMass {
-  Vec3 position;  ///< m
-  double mass;    ///< kg
-};
-
-enum class Element { T10, T4 };
 
 struct ModeOptions {
   Element element = Element::T10;
   int modes = 2;  ///< how many of the lowest to return
 };
 
+/// How a solid sways about its root: the Rayleigh quotients of its static deflections under uniform
+/// acceleration, the softest direction first (within 1 % above the frequencies of the modes that look so). A
+/// leaf's second mode is torsion; this names its lowest bending in both directions.
+struct Sway {
+  std::array<double, 2> frequencies{};  ///< Hz: bending the soft way, and the stiff way
+  std::array<Vec3, 2> directions{};     ///< unit: mean displacement of either
+};
+
 struct Modes {
-  std::vector<double> frequencies;  ///< Hz, ascending
+  std::vector<double> frequencies;      ///< Hz, ascending
   std::vector<Eigen::VectorXd> shapes;  ///< per mode, 3 × nodes: displacement of every node, M-normalised
-  std::vector<Vec3> tip_direction;  ///< per mode, unit: displacement of the node that moves most
+  std::vector<Vec3> tip_direction;      ///< per mode, unit: displacement of the node that moves most
+  Sway sway;
   uint32_t dof = 0;
   int iterations = 0;
   double residual = 0;  ///< max over modes of |K x − λ M x| / |K x|
   bool converged = false;
 };
 
-/// Throws Error{Input} when no face is held or the matrix is singular.
+/// Nodes are the tet mesh's vertices, then (T10) the mid-edge nodes of make_nodes(). All nodes of root_faces
+/// are held. Throws Error{Input} when no face is held, a part hangs on nothing, or the matrix is singular.
 Modes lowest_modes(const TetMesh& mesh, const ElasticMaterial& material, std::span<const CarriedMass> carried,
                    const ModeOptions& options = {});
 

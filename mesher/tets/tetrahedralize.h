@@ -1,4 +1,4 @@
-// Closed surface -> tetrahedra. The only file that sees TetGen.
+// Closed surface -> tetrahedra, by TetGen (which only tetgen_driver.cpp sees).
 #pragma once
 
 #include <span>
@@ -13,9 +13,12 @@ struct TetOptions {
   double min_dihedral = 10;        ///< degrees
 };
 
-/// The surface must be closed, oriented outward and free of self-intersection; that is checked before TetGen sees it,
-/// because TetGen aborts the process otherwise. The result's volume equals the surface's to 1e-6.
-/// is_root: per triangle, as SolidDomain::is_root. Throws Error{Input} with the reason.
+/// The surface must be closed, oriented outward and free of self-intersection; that is checked before TetGen
+/// sees it, because TetGen aborts the process otherwise. TetGen's tets fill the surface to 1e-6 of its
+/// volume; then those thinner than a thousandth of the solid's thickness are left out, at most 1e-4 of the
+/// volume. The surface's vertices in use come first and keep their positions. Safe on several threads; the
+/// same input gives the same result. is_root: per triangle, as SolidDomain::is_root. Throws Error{Input} with
+/// the reason.
 TetMesh tetrahedralize(const Mesh& surface, std::span<const uint8_t> is_root, const TetOptions& options = {});
 
 }  // namespace liana

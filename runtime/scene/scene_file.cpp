@@ -75,7 +75,8 @@ SceneClimber read_climber(const TomlTable& table) {
   else
     climber.species = table.text_or("species", "ivy");
   climber.position = table.vector("position");
-  climber.growth_speed = table.number_or("growth_speed", 1, 0, 20);
+  climber.growth_speed = table.number_or("growth_speed", 1, 0, 4);
+  climber.max_particles = static_cast<size_t>(table.integer_or("max_particles", 4000, 1, 1'000'000));
   table.refuse_unknown_keys();
   return climber;
 }
@@ -99,7 +100,7 @@ Scene read_scene(const std::filesystem::path& path) {
   if (const auto wind = table.table("wind")) {
     scene.wind.velocity = wind->vector("velocity");
     scene.wind.gust = wind->number_or("gust", scene.wind.gust, 0, 3);
-    scene.wind.gust_length = wind->number_or("gust_length", scene.wind.gust_length, 0.1, kFar);
+    scene.wind.gust_period = wind->number_or("gust_period", scene.wind.gust_period, 1, 30);
     if (scene.wind.velocity.norm() > 100) wind->fail("velocity", "is above 100 m/s, which no plant meets");
     wind->refuse_unknown_keys();
   }

@@ -30,12 +30,13 @@ struct SceneClimber {
   std::string species;
   Vec3 position;
   double growth_speed;  ///< multiple of the climber's normal pace
+  size_t max_particles;
 };
 
 struct SceneWind {
   Vec3 velocity = Vec3::Zero();  ///< mean, m/s
-  double gust = 0.5;             ///< standard deviation of the speed over its mean
-  double gust_length = 6;        ///< m, how far apart gusts are
+  double gust = 0.4;             ///< standard deviation of the speed over its mean
+  double gust_period = 6;        ///< s, from one strong gust to the next, about
 };
 
 struct SceneCamera {

@@ -16,13 +16,17 @@ inline Mat3 skew(const Vec3& v) {
 
 /// The rotation by |v| radians about v. Unit to rounding.
 inline Quat rotation_exp(const Vec3& v) {
-  const double angle2 = v.squaredNorm();
-  if (angle2 < 1e-6) {  // series; the next term is below 1e-21
-    const double s = 0.5 - angle2 / 48 + angle2 * angle2 / 3840;
-    return {1 - angle2 / 8 + angle2 * angle2 / 384, s * v.x(), s * v.y(), s * v.z()};
+  const double x = v.squaredNorm() / 4;  // half the angle, squared
+  double c, s;                           // cos(angle/2), sin(angle/2)/angle
+  if (x < 0.01) {                        // Taylor; the next terms are below 1e-17
+    c = 1 - x / 2 * (1 - x / 12 * (1 - x / 30 * (1 - x / 56 * (1 - x / 90))));
+    s = 0.5 * (1 - x / 6 * (1 - x / 20 * (1 - x / 42 * (1 - x / 72 * (1 - x / 110)))));
+  } else {
+    const double half = std::sqrt(x);
+    c = std::cos(half);
+    s = std::sin(half) / (2 * half);
   }
-  const double angle = std::sqrt(angle2), s = std::sin(angle / 2) / angle;
-  return {std::cos(angle / 2), s * v.x(), s * v.y(), s * v.z()};
+  return {c, s * v.x(), s * v.y(), s * v.z()};
 }
 
 /// A rotation's vector φ (|φ| ≤ π) and the symmetric part of how it changes: dφ = rate(φ) dθ, dθ a small
@@ -41,8 +45,12 @@ inline RotationLog rotation_log(const Quat& q) {
   const double sign = q.w() < 0 ? -1 : 1;  // q and −q are one rotation: take the one of |φ| ≤ π
   const Vec3 v = sign * q.vec();
   const double w = sign * q.w(), s2 = v.squaredNorm();
-  if (s2 < 1e-8) {  // φ = 2 asin(s)/s v with w = √(1−s²); the next terms are below 1e-16
-    return {(2 + s2 / 3) * v, 1.0 / 12 + s2 / 180};
+  if (s2 < 0.0025) {  // φ = 2 asin(s)/s v, and (1 − h cot h)/4h² with h = |φ|/2; the next terms are below
+                      // 1e-16, 1e-13
+    const double f =
+        1 + s2 / 6 * (1 + s2 * 9 / 20 * (1 + s2 * 25 / 42 * (1 + s2 * 49 / 72 * (1 + s2 * 81 / 110))));
+    const double h2 = f * f * s2;
+    return {2 * f * v, 1.0 / 12 + h2 / 180 + h2 * h2 / 1890 + h2 * h2 * h2 / 18900};
   }
   const double s = std::sqrt(s2), half = std::atan2(s, w);
   return {(2 * half / s) * v, (1 - half * w / s) / (4 * half * half)};

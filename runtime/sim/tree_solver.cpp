@@ -102,33 +102,36 @@ void TreeSolver::eliminate(size_t node, uint32_t parent, const TreeJoint& joint)
   factorise(n.factor);
   if (parent == kRoot) return;
 
-  // X = L⁻¹ [Ā b̄], rows of eight (one unused) so that vector lanes fill; then [S b'] = [Ā b̄] − (L⁻¹Ā)ᵀ D⁻¹ X.
-  double X[6][8], S[6][8];
+  // X = L⁻¹ [Ā b̄], rows of eight (one unused) so that vector lanes fill; then the lower triangle of
+  // S = Ā − (L⁻¹Ā)ᵀ D⁻¹ X and b' = b̄ − (L⁻¹Ā)ᵀ D⁻¹ L⁻¹ b̄, in pairs of columns.
+  double X[6][8], Y[6][8];
   for (int i = 0; i < 6; ++i) {
-    for (int j = 0; j < 6; ++j) S[i][j] = A[i >= j ? at(i, j) : at(j, i)];
-    S[i][6] = n.load[i];
-    S[i][7] = 0;
-    for (int j = 0; j < 8; ++j) X[i][j] = S[i][j];
+    for (int j = 0; j < 6; ++j) X[i][j] = A[i >= j ? at(i, j) : at(j, i)];
+    X[i][6] = n.load[i];
+    X[i][7] = 0;
     for (int k = 0; k < i; ++k) {
       const double l = n.factor[at(i, k)];
       for (int j = 0; j < 8; ++j) X[i][j] -= l * X[k][j];
     }
   }
-  for (int k = 0; k < 6; ++k) {
-    const double inverse = n.factor[at(k, k)];
-    double scaled[8];
-    for (int j = 0; j < 8; ++j) scaled[j] = inverse * X[k][j];
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 8; ++j) S[i][j] -= X[k][i] * scaled[j];
+  for (int k = 0; k < 6; ++k)
+    for (int j = 0; j < 8; ++j) Y[k][j] = n.factor[at(k, k)] * X[k][j];
+  double passed[kPacked], load[6];
+  for (int i = 0; i < 6; ++i) {
+    double row[6] = {}, last = 0;
+    for (int k = 0; k < 6; ++k) {
+      for (int j = 0; j < (i + 2) / 2 * 2; ++j) row[j] += X[k][i] * Y[k][j];
+      last += X[k][i] * Y[k][6];
+    }
+    for (int j = 0; j <= i; ++j) passed[at(i, j)] = A[at(i, j)] - row[j];
+    load[i] = n.load[i] - last;
   }
 
-  double passed[kPacked], at_parent[kPacked];
-  for (int i = 0; i < 6; ++i)
-    for (int j = 0; j <= i; ++j) passed[at(i, j)] = S[i][j];
+  double at_parent[kPacked];
   shift(passed, -joint.from_parent, at_parent);
   Node& p = nodes_[parent];
   for (int k = 0; k < kPacked; ++k) p.inertia[k] += at_parent[k];
-  const Vec3 passed_force(S[0][6], S[1][6], S[2][6]), passed_moment(S[3][6], S[4][6], S[5][6]);
+  const Vec3 passed_force(load[0], load[1], load[2]), passed_moment(load[3], load[4], load[5]);
   add_load(parent, passed_force, passed_moment + joint.from_parent.cross(passed_force));
 }
 

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <sstream>
 
 #include "mesher/base/error.h"
@@ -69,23 +72,16 @@ double Camera::near_plane() const {
 }
 
 Eigen::Matrix4f Camera::view() const {
-  Mat3 rotation;
-  rotation << right().transpose(), up().transpose(), -forward().transpose();
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  matrix.topLeftCorner<3, 3>() = rotation;
-  matrix.topRightCorner<3, 1>() = -rotation * eye();
-  return matrix.cast<float>();
+  const Vec3 from = eye(), way = up();
+  const glm::mat4 matrix =
+      glm::lookAt(glm::dvec3(from.x(), from.y(), from.z()), glm::dvec3(pivot.x(), pivot.y(), pivot.z()),
+                  glm::dvec3(way.x(), way.y(), way.z()));
+  return Eigen::Map<const Eigen::Matrix4f>(glm::value_ptr(matrix));
 }
 
 Eigen::Matrix4f Camera::projection(double aspect) const {
-  const double slope = std::tan(field_of_view / 2), n = near_plane();
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();
-  matrix(0, 0) = 1 / (slope * aspect);
-  matrix(1, 1) = 1 / slope;
-  matrix(2, 2) = -(kFar + n) / (kFar - n);
-  matrix(2, 3) = -2 * kFar * n / (kFar - n);
-  matrix(3, 2) = -1;
-  return matrix.cast<float>();
+  const glm::mat4 matrix = glm::perspective(field_of_view, aspect, near_plane(), kFar);
+  return Eigen::Map<const Eigen::Matrix4f>(glm::value_ptr(matrix));
 }
 
 Ray Camera::ray(double x, double y, int width, int height) const {

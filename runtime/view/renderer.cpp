@@ -27,7 +27,12 @@ void set_rays(ShaderProgram& program, const Camera& camera, int width, int heigh
 }  // namespace
 
 FrameOptions still_frame(int width, int height) {
-  return {.width = width, .height = height, .samples = 4, .shadow_size = 4096, .ambient_occlusion = true};
+  return {.width = width,
+          .height = height,
+          .samples = 4,
+          .shadow_size = 4096,
+          .shadow_taps = 4,
+          .ambient_occlusion = true};
 }
 
 Renderer::Renderer() = default;
@@ -62,6 +67,7 @@ void Renderer::draw(const Camera& camera, const FrameOptions& options) {
     program->set("shadow_texel", float(texel));
     // Half a pixel at least, so that the filter always blurs the map's own grid.
     program->set("shadow_softness", float(std::max(0.5, options.shadow_softness / texel / 2)));
+    program->set("shadow_taps", options.shadow_taps);
     program->set("shadow_map", 0);
   }
   draw_plants(tube_, leaf_);

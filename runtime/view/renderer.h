@@ -16,7 +16,8 @@ struct FrameOptions {
   int width = 1280, height = 720;  ///< pixels
   int samples = 1;                 ///< 4: smooth edges
   int shadow_size = 2048;          ///< pixels of the shadow map's side
-  double shadow_softness = 0.02;   ///< m, half width of a shadow's blurred edge
+  int shadow_taps = 2;  ///< samples across a shadow's edge; each already blends four pixels of the map
+  double shadow_softness = 0.02;  ///< m, half width of a shadow's blurred edge
   bool ambient_occlusion = false;
 };
 

@@ -10,7 +10,7 @@ struct SimulationStats {
   double time = 0;  ///< s, simulated
   size_t steps = 0, particles = 0, anchors = 0;
   double growth_ms = 0, collision_ms = 0, physics_ms = 0;  ///< of the last step
-  size_t redone_steps = 0;  ///< so far; 0 in normal motion
+  size_t redone_steps = 0;                                 ///< so far; 0 in normal motion
 };
 
 class Simulation {

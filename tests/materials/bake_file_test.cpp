@@ -1,7 +1,6 @@
 #include "materials/bake/bake_file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <bit>
 #include <cstring>
@@ -11,6 +10,7 @@
 #include "mesher/base/error.h"
 #include "mesher/base/files.h"
 #include "mesher/base/hash.h"
+#include "tests/support/scratch_folder.h"
 
 namespace liana {
 namespace {
@@ -110,10 +110,10 @@ TEST(BakeFile, CarriesTheWholeLaw) {
 }
 
 TEST(BakeFile, IsWrittenWholeAndRead) {
-  const fs::path path = fs::path(testing::TempDir()) / ("bake" + std::to_string(getpid()) + ".bake");
+  const ScratchFolder folder;
+  const fs::path path = folder / "tree.bake";
   write_bake(sample(), path);
   EXPECT_EQ(encode_bake(read_bake(path)), encode_bake(sample()));
-  fs::remove(path);
 }
 
 TEST(BakeFile, MissingFileAndFolderAreNamed) {
@@ -182,10 +182,12 @@ TEST(BakeFile, LyingPayloadsAreRefusedOrKeepTheRules) {
 }
 
 TEST(BakeFile, RulesAreCheckedOnWritingToo) {
-  const auto refused = [](auto change) {
+  const ScratchFolder folder;
+  const auto refused = [&](auto change) {
     Bake bake = sample();
     change(bake);
-    EXPECT_THROW(write_bake(bake, fs::path(testing::TempDir()) / "never.bake"), Error);
+    EXPECT_THROW(write_bake(bake, folder / "never.bake"), Error);
+    EXPECT_FALSE(fs::exists(folder / "never.bake"));
     refusal(encode_bake(bake));
   };
   refused([](Bake& bake) { bake.domains[0].parent = DomainId(size_t{1}); });

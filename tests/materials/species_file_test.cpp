@@ -1,13 +1,13 @@
 #include "materials/law/species_file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 
 #include "materials/law/law_numbers.h"
 #include "mesher/base/error.h"
 #include "mesher/base/files.h"
+#include "tests/support/scratch_folder.h"
 
 namespace liana {
 namespace {
@@ -38,27 +38,22 @@ reference_frequency = { value = 4, source = "s", confidence = "medium" }
 epsilon1 = { value = -1, source = "own", confidence = "medium" }
 )";
 
-/// The text as a file that is removed with the object.
-struct TemporarySpecies {
-  fs::path path;
-  explicit TemporarySpecies(const std::string& text)
-      : path(fs::path(testing::TempDir()) / ("species" + std::to_string(getpid()) + ".toml")) {
-    write_file(path, text);
-  }
-  ~TemporarySpecies() { fs::remove(path); }
-};
-
 std::string replaced(std::string text, const std::string& old_part, const std::string& new_part) {
   const size_t at = text.find(old_part);
   EXPECT_NE(at, std::string::npos) << old_part;
   return text.replace(at, old_part.size(), new_part);
 }
 
+SpeciesFile read_text(const std::string& text) {
+  const ScratchFolder folder;
+  write_file(folder / "species.toml", text);
+  return read_species_file(folder / "species.toml");
+}
+
 /// The error that the text is refused with, what and hint.
 std::string refusal(const std::string& text) {
-  const TemporarySpecies file(text);
   try {
-    read_species_file(file.path);
+    read_text(text);
   } catch (const Error& error) {
     EXPECT_EQ(error.kind, Error::Kind::Input);
     return std::string(error.what()) + " | " + error.hint;
@@ -68,8 +63,7 @@ std::string refusal(const std::string& text) {
 }
 
 TEST(SpeciesFile, GroupsTakeSharedNumbersUnlessTheyGiveTheirOwn) {
-  const TemporarySpecies file(kValid);
-  const SpeciesFile species = read_species_file(file.path);
+  const SpeciesFile species = read_text(kValid);
   EXPECT_EQ(species.law.species, "test");
   EXPECT_EQ(species.law.default_material.density, 700);
   EXPECT_EQ(species.law.group("level0").epsilon1, -0.5);
@@ -80,8 +74,7 @@ TEST(SpeciesFile, GroupsTakeSharedNumbersUnlessTheyGiveTheirOwn) {
 }
 
 TEST(SpeciesFile, KeepsEveryNumberWithItsSource) {
-  const TemporarySpecies file(kValid);
-  const SpeciesFile species = read_species_file(file.path);
+  const SpeciesFile species = read_text(kValid);
   EXPECT_EQ(species.numbers.size(), 3u + 2 * (5 + 6));
   const auto own =
       std::find_if(species.numbers.begin(), species.numbers.end(),
@@ -92,8 +85,9 @@ TEST(SpeciesFile, KeepsEveryNumberWithItsSource) {
 }
 
 TEST(SpeciesFile, C1StandsForTheFrequencyAtOneMetre) {
-  const TemporarySpecies file(replaced(kValid, "reference_frequency = { value = 1.5", "c1 = { value = 1.25"));
-  const GroupLaw law = read_species_file(file.path).law.group("level0");
+  const GroupLaw law =
+      read_text(replaced(kValid, "reference_frequency = { value = 1.5", "c1 = { value = 1.25"))
+          .law.group("level0");
   EXPECT_EQ(law.reference_frequency, 1.25);
   EXPECT_EQ(law.reference_length, 1);
 }
@@ -218,14 +212,13 @@ TEST(FindSpecies, SuggestsTheNearestNameAndListsAll) {
 }
 
 TEST(FindSpecies, LooksInLianaDataFirst) {
-  const fs::path folder = fs::path(testing::TempDir()) / ("data" + std::to_string(getpid()));
+  const ScratchFolder folder;
   fs::create_directories(folder / "species");
-  write_file(folder / "species" / "apple.toml", kValid);
-  setenv("LIANA_DATA", folder.c_str(), 1);
+  write_file(folder / "species/apple.toml", kValid);
+  setenv("LIANA_DATA", (folder / "").c_str(), 1);
   EXPECT_EQ(read_species("apple").species, "test");
   unsetenv("LIANA_DATA");
   EXPECT_EQ(read_species("apple").species, "apple");
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // Stands before every fragment shader: noise, light and sky.
 
-const vec3 kSunLight = vec3(3.3, 2.95, 2.45);
-const vec3 kSkyLight = vec3(0.62, 0.76, 1.0);
-const vec3 kGroundLight = vec3(0.30, 0.27, 0.19);
+const vec3 kSunLight = vec3(3.35, 3.05, 2.6);
+const vec3 kSkyLight = vec3(0.62, 0.74, 0.95);
+const vec3 kGroundLight = vec3(0.29, 0.27, 0.18);
 
 float hashed(ivec3 p) {
   uint h = uint(p.x) * 0x9E3779B1u ^ uint(p.y) * 0x85EBCA77u ^ uint(p.z) * 0xC2B2AE3Du;
@@ -34,11 +34,18 @@ float noise(vec3 p) {
 
 float fractal(vec2 p) { return 0.5 * noise(p) + 0.3 * noise(2.1 * p + 17.0) + 0.2 * noise(4.3 * p + 41.0); }
 
+// The sky's haze and blue, without clouds or hills: what distant things fade into.
 vec3 sky(vec3 direction) {
   float height = max(direction.y, 0.0), towards = max(dot(direction, to_sun), 0.0);
-  vec3 color = mix(vec3(0.66, 0.77, 0.88), vec3(0.15, 0.33, 0.70), 1.0 - exp(-3.2 * height));
-  color += vec3(1.0, 0.80, 0.55) * (0.22 * pow(towards, 8.0) + 0.5 * pow(towards, 120.0));
-  return color;
+  vec3 color = mix(vec3(0.62, 0.76, 0.92), vec3(0.08, 0.26, 0.76), 1.0 - exp(-4.0 * height));
+  return color + vec3(1.0, 0.80, 0.55) * (0.25 * pow(towards, 8.0) + 0.6 * pow(towards, 120.0));
+}
+
+// Highlights roll off, shadows keep their depth; then the screen's encoding.
+vec3 developed(vec3 color) {
+  color *= 0.62;
+  color = color * (2.51 * color + 0.03) / (color * (2.43 * color + 0.59) + 0.14);  // filmic curve (Narkowicz 2015)
+  return pow(clamp(color, 0.0, 1.0), vec3(1.0 / 2.2));
 }
 
 // 1 in the sun, 0 in full shadow. The point is moved off its surface by the filter's reach, against self-shadowing.
@@ -48,10 +55,11 @@ float sunlit(vec3 world, vec3 normal) {
   vec3 p = (light_matrix * vec4(world + off, 1.0)).xyz;
   if (any(lessThan(p.xy, vec2(0.0))) || any(greaterThan(p, vec3(1.0)))) return 1.0;
   vec2 unit = shadow_softness / vec2(textureSize(shadow_map, 0));
-  float sum = 0.0;
-  for (int i = -1; i <= 1; ++i)
-    for (int j = -1; j <= 1; ++j) sum += texture(shadow_map, vec3(p.xy + vec2(i, j) * unit, p.z));
-  return sum / 9.0;
+  float sum = 0.0, middle = 0.5 * float(shadow_taps - 1), spacing = shadow_taps > 1 ? 1.0 / middle : 0.0;
+  for (int i = 0; i < shadow_taps; ++i)
+    for (int j = 0; j < shadow_taps; ++j)
+      sum += texture(shadow_map, vec3(p.xy + (vec2(i, j) - middle) * spacing * unit, p.z));
+  return sum / float(shadow_taps * shadow_taps);
 }
 
 vec3 ambient(vec3 normal) { return mix(kGroundLight, kSkyLight, 0.5 + 0.5 * normal.y); }
@@ -65,14 +73,12 @@ vec3 bumped(vec3 normal, vec3 world, float height) {
   return normalize(abs(area) * normal - gradient);
 }
 
-// Fades into the haze, compresses highlights, and encodes for the screen. The alpha channel tells the picture's last
-// pass how much of the light is ambient: what ambient occlusion may take away.
+// Fades into the haze and develops. The alpha channel tells the picture's last pass how much of the light is ambient:
+// what ambient occlusion may take away.
 vec4 finished(vec3 sun_part, vec3 ambient_part, vec3 world) {
   vec3 way = world - eye;
-  float distance = length(way), haze = 1.0 - exp(-pow(distance / 90.0, 1.6));
+  float distance = length(way), haze = 1.0 - exp(-pow(distance / 160.0, 1.3));
   vec3 color = sun_part + ambient_part;
   float share = dot(ambient_part, vec3(1.0)) / max(dot(color, vec3(1.0)), 1e-5) * (1.0 - haze);
-  color = mix(color, sky(way / distance), haze);
-  color = color * (1.0 + color / 9.0) / (1.0 + color);  // Reinhard with white at 3
-  return vec4(pow(1.22 * color, vec3(1.0 / 2.2)), share);
+  return vec4(developed(mix(color, sky(way / distance), haze)), share);
 }

@@ -1,0 +1,26 @@
+// Rings near the root: where the clamp bends a branch, the mesh must be fine along it.
+#pragma once
+
+#include <vector>
+
+#include "mesher/base/mesh.h"
+
+namespace liana {
+
+/// A surface with the distance from its root at every vertex and marks on its triangles.
+struct MarkedSurface {
+  Mesh mesh;
+  std::vector<double> distance;  ///< m, per vertex
+  std::vector<uint8_t> is_root;  ///< per triangle
+};
+
+/// Distances at which a clamped branch wants rings: 0.5 d, 1.5 d, 3.5 d, ... while steps are below length/6,
+/// then even steps of at most length/6. Ascending, without 0 and length.
+std::vector<double> ring_levels(double length, double diameter);
+
+/// Splits triangles along the iso-lines of `distance` at ring_levels, where they are longer than the rings
+/// are apart. The shape does not change: every new vertex lies on an edge. A vertex near a line serves as it
+/// is. Returns the number of lines cut.
+int grade(MarkedSurface& surface, double length, double diameter);
+
+}  // namespace liana

@@ -1,0 +1,155 @@
+#include "mesher/surface/root_interface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "mesher/surface/cap.h"
+#include "mesher/surface/geodesic.h"
+
+namespace liana {
+namespace {
+
+std::vector<uint32_t> all_vertices(const Mesh& mesh) {
+  std::vector<uint32_t> all(mesh.positions.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return all;
+}
+
+/// The vertex farthest from another along the surface, and the distances of all.
+uint32_t farthest(const Mesh& mesh, uint32_t from, std::vector<double>& distance) {
+  std::vector<uint8_t> source(mesh.positions.size(), 0);
+  source[from] = 1;
+  distance = geodesic_distance(mesh, source);
+  return static_cast<uint32_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
+}
+
+/// Faces connected to the seed over edges that turn by less than 35°, and that look less than 60° away from
+/// it.
+std::vector<uint8_t> flood_to_crease(const Mesh& mesh, const Adjacency& adjacency, uint32_t seed) {
+  const double crease = std::cos(35 * kPi / 180), cone = std::cos(60 * kPi / 180);
+  const auto normal = [&](uint32_t i) { return Vec3(area_vector(mesh, mesh.triangles[i]).normalized()); };
+  const Vec3 axis = normal(seed);
+  std::vector<uint8_t> marked(mesh.triangles.size(), 0);
+  std::vector<uint32_t> stack{seed};
+  marked[seed] = 1;
+  while (!stack.empty()) {
+    const uint32_t triangle = stack.back();
+    stack.pop_back();
+    for (const uint32_t next : adjacency.across[triangle]) {
+      if (marked[next]) continue;
+      const Vec3 n = normal(next);
+      if (n.dot(normal(triangle)) < crease || n.dot(axis) < cone) continue;
+      marked[next] = 1;
+      stack.push_back(next);
+    }
+  }
+  return marked;
+}
+
+}  // namespace
+
+size_t root_loop(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loops,
+                 const Attachment& attachment) {
+  size_t best = loops.size();
+  double least = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < loops.size(); ++i) {
+    const double depth = attachment.depth(loop_middle(mesh, loops[i]));
+    if (depth < least) {
+      least = depth;
+      best = i;
+    }
+  }
+  if (best == loops.size() || least < 0) return best;  // none, or inside the parent
+  // A closed root end lies nearer to the parent than the nearest hole, by more than the hole's width.
+  const double width = 2 * std::sqrt(lid_area(mesh, loops[best]) / kPi);
+  const uint32_t nearest = attachment.nearest(mesh, all_vertices(mesh));
+  const bool at_loop = attachment.depth(mesh.positions[nearest]) > least - width;
+  return at_loop ? best : loops.size();
+}
+
+std::vector<uint8_t> root_end(const Mesh& mesh, const Adjacency& adjacency, const Attachment& attachment) {
+  // The nearest vertex may lie anywhere around the foot (the parent's bark cuts through it); the point
+  // farthest from the tip is the end itself.
+  std::vector<double> from_near, from_tip;
+  uint32_t end = attachment.nearest(mesh, all_vertices(mesh));
+  const uint32_t tip = farthest(mesh, end, from_near);
+  const uint32_t opposite = farthest(mesh, tip, from_tip);
+  if (from_near[opposite] < 0.3 * from_near[tip]) end = opposite;
+
+  Vec3 away = Vec3::Zero();  // from what lies about a tenth of the length up to the end
+  const double reach = 0.1 * from_tip[end];
+  int count = 0;
+  for (size_t v = 0; v < mesh.positions.size(); ++v)
+    if (std::abs(from_tip[v] - (from_tip[end] - reach)) < reach / 2) {
+      away += mesh.positions[end] - mesh.positions[v];
+      ++count;
+    }
+  if (count == 0) away = mesh.positions[end] - mesh.positions[tip];
+  away.normalize();
+
+  uint32_t seed = 0;
+  double best = -2;
+  for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    if (std::find(t.begin(), t.end(), end) == t.end()) continue;
+    const double looks_away = area_vector(mesh, t).normalized().dot(away);
+    if (looks_away > best) {
+      best = looks_away;
+      seed = i;
+    }
+  }
+  if (best > 0.5) return flood_to_crease(mesh, adjacency, seed);
+  std::vector<uint8_t> marked;  // a pointed end: the faces at the point
+  for (const Triangle& t : mesh.triangles) marked.push_back(std::find(t.begin(), t.end(), end) != t.end());
+  return marked;
+}
+
+std::vector<std::vector<uint8_t>> root_edges(const Mesh& mesh,
+                                             const std::vector<std::vector<uint32_t>>& loops,
+                                             const Attachment& attachment) {
+  std::vector<uint32_t> border;
+  for (const std::vector<uint32_t>& loop : loops) border.insert(border.end(), loop.begin(), loop.end());
+  // A blade may touch its twig anywhere; its base is at the end of its long axis and at the parent.
+  Vec3 near = Vec3::Zero(), far = Vec3::Zero();
+  double best = -std::numeric_limits<double>::infinity();
+  for (const uint32_t v : border) {
+    const Vec3& p = mesh.positions[v];
+    const auto beyond = std::max_element(border.begin(), border.end(), [&](uint32_t a, uint32_t b) {
+      return (mesh.positions[a] - p).squaredNorm() < (mesh.positions[b] - p).squaredNorm();
+    });
+    const double score = (mesh.positions[*beyond] - p).norm() - 2 * attachment.height(p);
+    if (score <= best) continue;
+    best = score;
+    near = p;
+    far = mesh.positions[*beyond];
+  }
+  const double length = (far - near).norm();
+  const Vec3 axis = (far - near) / length;
+  const auto along = [&](uint32_t v) { return (mesh.positions[v] - near).dot(axis); };
+
+  double base = 0;
+  for (const uint32_t v : border)
+    if ((mesh.positions[v] - near).norm() < length / 4) base = std::min(base, along(v));
+  std::vector<std::vector<uint8_t>> marked;
+  bool any = false;
+  const auto mark = [&](auto is_root) {
+    marked.clear();
+    for (const std::vector<uint32_t>& loop : loops) {
+      marked.emplace_back();
+      for (size_t i = 0; i < loop.size(); ++i) {
+        marked.back().push_back(is_root(loop[i], loop[(i + 1) % loop.size()]));
+        any = any || marked.back().back();
+      }
+    }
+  };
+  mark([&](uint32_t a, uint32_t b) { return std::max(along(a), along(b)) <= base + 0.04 * length; });
+  if (!any) {
+    const uint32_t point = *std::min_element(border.begin(), border.end(),
+                                             [&](uint32_t a, uint32_t b) { return along(a) < along(b); });
+    mark([&](uint32_t a, uint32_t b) { return a == point || b == point; });
+  }
+  return marked;
+}
+
+}  // namespace liana

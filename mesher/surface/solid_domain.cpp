@@ -1,0 +1,165 @@
+// make_solid, as its steps.
+#include "mesher/surface/solid_domain.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesher/base/error.h"
+#include "mesher/base/mesh_checks.h"
+#include "mesher/surface/attachment.h"
+#include "mesher/surface/cap.h"
+#include "mesher/surface/centreline.h"
+#include "mesher/surface/clean_shell.h"
+#include "mesher/surface/geodesic.h"
+#include "mesher/surface/grade.h"
+#include "mesher/surface/root_interface.h"
+#include "mesher/surface/self_intersection.h"
+#include "mesher/surface/sheet.h"
+
+namespace liana {
+namespace {
+
+/// A closed surface with distances and root, and the two lengths that everything after is measured in.
+struct Rooted {
+  MarkedSurface surface;
+  double length = 0;    ///< m, longest geodesic
+  double diameter = 0;  ///< m, of the root interface
+  std::string route;
+};
+
+/// Distances on the surface from the vertices of the marked triangles.
+std::vector<double> distance_from_root(const Mesh& mesh, const std::vector<uint8_t>& is_root) {
+  std::vector<uint8_t> source(mesh.positions.size(), 0);
+  for (size_t i = 0; i < is_root.size(); ++i)
+    if (is_root[i])
+      for (const uint32_t v : mesh.triangles[i]) source[v] = 1;
+  return geodesic_distance(mesh, source);
+}
+
+/// Closes the open ends, turns the surface outward and finds the root on it.
+Rooted body(const Mesh& shell, const Adjacency& adjacency, const std::vector<std::vector<uint32_t>>& loops,
+            const Attachment& attachment) {
+  Rooted result;
+  Mesh& mesh = result.surface.mesh;
+  mesh = shell;
+  const size_t modelled = mesh.positions.size();
+  const size_t root = root_loop(mesh, loops, attachment);
+  std::vector<uint8_t>& is_root = result.surface.is_root;
+  is_root.assign(mesh.triangles.size(), 0);
+  for (size_t i = 0; i < loops.size(); ++i) is_root.insert(is_root.end(), add_lid(mesh, loops[i]), i == root);
+  if (signed_volume(mesh) < 0) {
+    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+    result.route = "+turned-outward";
+  }
+  result.route = (loops.empty() ? "closed" : "capped") + result.route;
+  if (root == loops.size())
+    is_root = root_end(mesh, loops.empty() ? adjacency : find_adjacency(mesh), attachment);
+
+  double root_area = 0;
+  for (size_t i = 0; i < is_root.size(); ++i)
+    if (is_root[i]) root_area += area_vector(mesh, mesh.triangles[i]).norm();
+  result.diameter = 2 * std::sqrt(root_area / kPi);
+  result.surface.distance = distance_from_root(mesh, is_root);
+  // The lids are ours: the branch is as long as its modelled surface.
+  const std::vector<double>& distance = result.surface.distance;
+  result.length = *std::max_element(distance.begin(), distance.begin() + static_cast<ptrdiff_t>(modelled));
+  if (const int lines = grade(result.surface, result.length, result.diameter))
+    result.route += fmt::format("+{}-rings", lines);
+  return result;
+}
+
+/// Finds the root on the sheet's border, grades the sheet and gives it its thickness.
+Rooted sheet(const Mesh& shell, const std::vector<std::vector<uint32_t>>& loops, double thickness,
+             const Attachment& attachment) {
+  Rooted result;
+  result.route = "sheet-extruded";
+  const std::vector<std::vector<uint8_t>> marked = root_edges(shell, loops, attachment);
+  std::vector<uint8_t> source(shell.positions.size(), 0);
+  for (size_t l = 0; l < loops.size(); ++l)
+    for (size_t i = 0; i < loops[l].size(); ++i) {
+      const uint32_t a = loops[l][i], b = loops[l][(i + 1) % loops[l].size()];
+      if (!marked[l][i]) continue;
+      source[a] = source[b] = 1;
+      result.diameter += (shell.positions[a] - shell.positions[b]).norm();
+    }
+  MarkedSurface graded{shell, geodesic_distance(shell, source),
+                       std::vector<uint8_t>(shell.triangles.size(), 0)};
+  result.length = *std::max_element(graded.distance.begin(), graded.distance.end());
+  if (const int lines = grade(graded, result.length, result.diameter))
+    result.route += fmt::format("+{}-rings", lines);
+
+  const Adjacency adjacency = find_adjacency(graded.mesh);
+  const std::vector<std::vector<uint32_t>> border = border_loops(graded.mesh, adjacency);
+  result.surface.mesh = extrude_sheet(graded.mesh, border, thickness);
+  result.surface.distance = graded.distance;
+  result.surface.distance.insert(result.surface.distance.end(), graded.distance.begin(),
+                                 graded.distance.end());
+  result.surface.is_root.assign(2 * graded.mesh.triangles.size(), 0);
+  // Cuts never touch the root edges (their distance is 0), so their ends are still neighbours on the border.
+  for (const std::vector<uint32_t>& loop : border)
+    for (size_t i = 0; i < loop.size(); ++i) {
+      const uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
+      bool is_root = false;
+      for (size_t l = 0; l < loops.size(); ++l)
+        for (size_t k = 0; k < loops[l].size(); ++k)
+          is_root = is_root || (marked[l][k] && loops[l][k] == a && loops[l][(k + 1) % loops[l].size()] == b);
+      result.surface.is_root.insert(result.surface.is_root.end(), 2, is_root);
+    }
+  return result;
+}
+
+Vec3 centre_of_root(const MarkedSurface& surface) {
+  Vec3 sum = Vec3::Zero();
+  double area = 0;
+  for (size_t i = 0; i < surface.is_root.size(); ++i) {
+    if (!surface.is_root[i]) continue;
+    const Triangle& t = surface.mesh.triangles[i];
+    const double a = area_vector(surface.mesh, t).norm();
+    sum +=
+        a / 3 * (surface.mesh.positions[t[0]] + surface.mesh.positions[t[1]] + surface.mesh.positions[t[2]]);
+    area += a;
+  }
+  return sum / area;
+}
+
+}  // namespace
+
+SolidDomain make_solid(const SegmentedPlant& plant, DomainId id) {
+  const Domain& domain = plant.domains[id.index()];
+  const std::string where = fmt::format("domain '{}'", domain.name);
+  const auto fail = [&](const std::string& reason, const std::string& hint) {
+    return Error(Error::Kind::Input, where + ": " + reason, hint);
+  };
+
+  const CleanShell shell = clean_shell(domain.surface, where);
+  const Adjacency adjacency = find_adjacency(shell.mesh);
+  const std::vector<std::vector<uint32_t>> loops = border_loops(shell.mesh, adjacency);
+  const Attachment attachment(plant, id);
+  const bool flat = !loops.empty() && is_sheet(shell.mesh, loops);
+  Rooted rooted = flat ? sheet(shell.mesh, loops, domain.thickness, attachment)
+                       : body(shell.mesh, adjacency, loops, attachment);
+
+  SolidDomain solid;
+  solid.length = rooted.length;
+  solid.volume = signed_volume(rooted.surface.mesh);
+  // π/4 (d/ℓ)² = 1e-10 is a branch 90,000 times as long as thick, beyond anything that grows.
+  if (!std::isfinite(solid.length) || !(solid.length > 0))
+    throw fail("it has no length", "check its surface");
+  if (!(solid.volume > 1e-10 * std::pow(solid.length, 3)))
+    throw fail(fmt::format("its surface encloses no volume ({:.3g} m³ at {:.3g} m length)", solid.volume,
+                           solid.length),
+               "give it thickness, or model it as an open sheet");
+  if (self_intersects(rooted.surface.mesh))
+    throw fail("its surface passes through itself once closed",
+               "straighten bends sharper than the branch is thick, or remove inner faces");
+  solid.root = centre_of_root(rooted.surface);
+  solid.centreline = find_centreline(rooted.surface, solid.root, solid.length, rooted.diameter);
+  solid.surface = std::move(rooted.surface.mesh);
+  solid.is_root = std::move(rooted.surface.is_root);
+  solid.route = rooted.route + shell.notes;
+  return solid;
+}
+
+}  // namespace liana

@@ -1,0 +1,130 @@
+#include "modal/domain_modes.h"
+
+#include <malloc.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+
+#include "mesher/base/parallel.h"
+
+namespace liana {
+namespace {
+
+/// The copy to take the solution from.
+struct Source {
+  size_t solid;
+  Similarity similarity;  ///< from the source to the copy
+};
+
+/// For each solid the first of its shape. Candidates share the connectivity and lie within a window of one
+/// number that all copies share, so that thousands of branches with equal connectivity and different shapes
+/// do not meet pairwise.
+std::vector<Source> find_sources(const std::vector<Solid>& solids, bool share) {
+  // The area and volume of a copy within tolerance differ by a few times that tolerance.
+  constexpr double kWindow = 0.02;
+  struct Candidate {
+    size_t solid;
+    double slenderness;
+  };
+  std::map<uint64_t, std::multimap<double, Candidate>> known;
+  std::vector<Source> sources;
+  for (size_t i = 0; i < solids.size(); ++i) {
+    sources.push_back({i, {}});
+    const ShapeSignature signature = shape_signature(solids[i]);
+    if (!share || !std::isfinite(signature.compactness)) continue;  // tetrahedralize() will say what is wrong
+    const double slenderness = signature.extent / signature.thickness;
+    auto& candidates = known[signature.connectivity];
+    const auto end = candidates.upper_bound(signature.compactness * (1 + kWindow));
+    for (auto c = candidates.lower_bound(signature.compactness * (1 - kWindow)); c != end; ++c) {
+      if (std::abs(c->second.slenderness / slenderness - 1) > kWindow) continue;
+      if (const auto similarity = find_similarity(solids[c->second.solid], solids[i])) {
+        sources.back() = {c->second.solid, *similarity};
+        break;
+      }
+    }
+    if (sources.back().solid == i) candidates.emplace(signature.compactness, Candidate{i, slenderness});
+  }
+  return sources;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+struct Seconds {
+  double tets = 0, modes = 0;
+};
+
+DomainModes solve(const Solid& solid, const ElasticMaterial& material, const DomainModesOptions& options,
+                  Seconds& seconds) {
+  DomainModes result;
+  auto start = std::chrono::steady_clock::now();
+  try {
+    const TetMesh tets = tetrahedralize(*solid.surface, solid.is_root, options.tets);
+    seconds.tets += seconds_since(start);
+    start = std::chrono::steady_clock::now();
+    Modes modes = lowest_modes(tets, material, solid.carried, options.modes);
+    seconds.modes += seconds_since(start);
+    result.frequencies = std::move(modes.frequencies);
+    result.tip_direction = std::move(modes.tip_direction);
+    result.sway = modes.sway;
+    result.tets = static_cast<uint32_t>(tets.tets.size());
+    result.dof = modes.dof;
+    result.iterations = modes.iterations;
+    result.residual = modes.residual;
+    result.converged = modes.converged;
+  } catch (const Error& error) {
+    result.failure = error.what();
+  }
+  return result;
+}
+
+DomainModes copy_of(const DomainModes& original, const Similarity& similarity) {
+  DomainModes copy = original;
+  for (double& f : copy.frequencies) f /= similarity.scale;
+  for (double& f : copy.sway.frequencies) f /= similarity.scale;
+  for (Vec3& d : copy.tip_direction) d = similarity.rotation * d;
+  for (Vec3& d : copy.sway.directions) d = similarity.rotation * d;
+  return copy;
+}
+
+}  // namespace
+
+AllModes solve_domains(const std::vector<Solid>& solids, const ElasticMaterial& material,
+                       const DomainModesOptions& options, Progress& progress) {
+  const std::vector<Source> sources = find_sources(solids, options.share_equal_shapes);
+  std::vector<size_t> unique;
+  for (size_t i = 0; i < solids.size(); ++i)
+    if (sources[i].solid == i) unique.push_back(i);
+  // Large ones first, so that no worker ends on one alone.
+  std::stable_sort(unique.begin(), unique.end(), [&](size_t a, size_t b) {
+    return solids[a].surface->triangles.size() > solids[b].surface->triangles.size();
+  });
+
+  // Keep what is freed: thousands of solutions take and give back the same megabyte, and asking the system
+  // for it each time costs a sixth of a small domain.
+  mallopt(M_TRIM_THRESHOLD, 64 << 20);
+  mallopt(M_MMAP_THRESHOLD, 64 << 20);
+
+  AllModes all;
+  all.domains.resize(solids.size());
+  progress.begin("modes", unique.size());
+  const unsigned threads = options.threads ? options.threads : default_thread_count();
+  std::vector<Seconds> seconds(threads);
+  parallel_for(unique.size(), threads, [&](size_t k, unsigned worker) {
+    progress.throw_if_cancelled();
+    all.domains[unique[k]] = solve(solids[unique[k]], material, options, seconds[worker]);
+    progress.advance();
+  });
+  for (size_t i = 0; i < solids.size(); ++i) {
+    const size_t source = sources[i].solid;
+    if (source != i) all.domains[i] = copy_of(all.domains[source], sources[i].similarity);
+    all.domains[i].solved_as = source;
+  }
+  for (const Seconds& s : seconds) all.tet_seconds += s.tets, all.mode_seconds += s.modes;
+  return all;
+}
+
+}  // namespace liana

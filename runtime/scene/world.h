@@ -1,0 +1,90 @@
+// A scene that lives: its plants grow, feel wind, touch obstacles and move, step by step.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "runtime/growth/climber.h"
+#include "runtime/scene/scene_file.h"
+#include "runtime/sim/collision/contacts.h"
+#include "runtime/sim/time_step.h"
+#include "runtime/view/camera.h"
+#include "runtime/view/plant_drawing.h"
+#include "runtime/view/simulation_view.h"
+#include "runtime/wind/steady_gust_wind.h"
+
+namespace liana {
+
+/// Seconds of work since the start, summed over threads.
+struct PhaseSeconds {
+  double growth = 0, collision = 0, physics = 0;
+};
+
+/// What happened since the start.
+struct WorldReport {
+  size_t steps = 0, particles = 0, anchors = 0;
+  double max_penetration = 0;  ///< m, deepest that any particle ever was in an obstacle or the ground
+  size_t redone_steps = 0;     ///< steps that the solver took again with finer substeps
+  size_t lost_steps = 0;       ///< steps that did not stay finite and were stopped
+  PhaseSeconds seconds;
+};
+
+/// Deterministic for a scene: the same states with any number of threads.
+class World final : public Simulation {
+ public:
+  /// Reads the bakes and species that the scene names. threads = 0: one per core. Throws Error.
+  explicit World(const Scene& scene, unsigned threads = 0);
+
+  void step() override;
+  double time_step() const override { return scene_.time_step; }
+  void draw(DrawScene& scene) const override;
+  size_t plant_count() const override { return inhabitants_.size(); }
+  const Plant& plant(size_t i) const override { return inhabitants_[i]->plant; }
+  void set_grab(size_t plant, const WorldSpring& spring) override;
+  void clear_grab() override { grabbed_.reset(); }
+  SimulationStats stats() const override;
+
+  /// As draw(), with every branch and leaf named when `names`.
+  DrawScene drawing(bool names = false) const;
+  Camera camera() const;  ///< the scene's, or one that sees everything
+  WorldReport report() const;
+  uint64_t state_hash() const;
+  /// What calibration changed or could not serve, a sentence each.
+  const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  struct Inhabitant {
+    Plant plant;
+    PlantStepper stepper;
+    Contacts contacts;
+    std::optional<Climber> climber;
+    double growth_speed = 1;
+    PlantLook look;
+    std::vector<WorldSpring> springs;  // contacts, wind and grab of the step
+    WorldReport report;
+  };
+  struct Grab {
+    size_t plant;
+    WorldSpring spring;
+  };
+
+  double time() const { return static_cast<double>(steps_) * scene_.time_step; }
+  void add_baked(const ScenePlant& entry);
+  void add_climber(const SceneClimber& entry, uint64_t seed);
+  void step_inhabitant(size_t index);
+  void add_to(DrawScene& scene, bool names) const;
+
+  Scene scene_;
+  unsigned threads_;
+  std::vector<std::unique_ptr<SdfObstacle>> obstacles_;
+  std::vector<const SdfObstacle*> solids_;
+  SteadyGustWind wind_;
+  std::vector<std::unique_ptr<Inhabitant>> inhabitants_;
+  std::optional<Grab> grabbed_;
+  size_t steps_ = 0;
+  PhaseSeconds last_step_;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace liana

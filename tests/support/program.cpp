@@ -1,0 +1,34 @@
+#include "tests/support/program.h"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "mesher/base/files.h"
+#include "tests/support/scratch_folder.h"
+
+namespace liana {
+
+namespace fs = std::filesystem;
+
+ProgramResult run_liana(const std::vector<std::string>& arguments, const fs::path& folder) {
+  const ScratchFolder capture;
+  const fs::path out = capture / "out", err = capture / "err";
+  const pid_t child = fork();
+  if (child == 0) {
+    std::vector<const char*> argv = {LIANA_PROGRAM};
+    for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+    argv.push_back(nullptr);
+    const int to_out = open(out.c_str(), O_WRONLY | O_CREAT, 0600), to_err = open(err.c_str(), O_WRONLY | O_CREAT, 0600);
+    const int from = open("/dev/null", O_RDONLY);
+    if (chdir(folder.c_str()) != 0) _exit(127);
+    dup2(from, 0), dup2(to_out, 1), dup2(to_err, 2);
+    execv(argv[0], const_cast<char* const*>(argv.data()));
+    _exit(127);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_file(out), read_file(err)};
+}
+
+}  // namespace liana
