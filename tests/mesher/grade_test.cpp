@@ -40,7 +40,7 @@ TEST(RingLevels, DoubleFromHalfADiameterThenStayBelowASixth) {
   }
 }
 
-TEST(Grade, GivesABareprismTheWantedRingsAndKeepsItsShape) {
+TEST(Grade, GivesABarePrismTheWantedRingsAndKeepsItsShape) {
   for (const double ratio : {3.0, 10.0, 100.0}) {
     const double diameter = 0.02, length = ratio * diameter;
     MarkedSurface surface = bare_prism(length, diameter);
@@ -51,6 +51,9 @@ TEST(Grade, GivesABareprismTheWantedRingsAndKeepsItsShape) {
     std::set<long> heights;  // in nanometres
     for (const Vec3& p : surface.mesh.positions) heights.insert(std::lround(p.y() * 1e9));
     EXPECT_EQ(heights.size(), levels.size() + 2);
+    // Six vertices a ring, none on the diagonals of the flat sides: twelve triangles between rings, six a cap.
+    EXPECT_EQ(surface.mesh.triangles.size(), 12 * (levels.size() + 1) + 12);
+    EXPECT_EQ(surface.mesh.positions.size(), 6 * (levels.size() + 2) + 2);
     // Every cut adds rounding of 1 ulp of a coordinate only.
     EXPECT_NEAR(signed_volume(surface.mesh) / volume, 1, 1e-13);
     EXPECT_NEAR(surface_area(surface.mesh) / area, 1, 1e-13);

@@ -132,7 +132,8 @@ TEST(PlantFile, AttachesThroughNodesWithoutMesh) {
   });
   const auto parents = [](const SegmentedPlant& p) {
     std::map<std::string, std::string> names;
-    for (const Domain& d : p.domains) names[d.name] = d.parent.valid() ? p.domains[d.parent.index()].name : "";
+    for (const Domain& d : p.domains)
+      names[d.name] = d.parent.valid() ? p.domains[d.parent.index()].name : "";
     return names;
   };
   EXPECT_EQ(parents(plant), parents(make_small_plant()));
