@@ -1,7 +1,7 @@
 #include "materials/pipeline/bake_plant.h"
 
 #include "materials/pipeline/stages.h"
-#include "materials/pipeline/stopwatch.h"
+#include "mesher/base/stopwatch.h"
 
 namespace liana {
 

@@ -174,7 +174,20 @@ std::string Stages::describe_failure(DomainId id) const {
 }
 
 std::vector<std::string> Stages::notes() const {
-  return {};
+  std::set<std::string> used;
+  for (const Domain& domain : plant_.domains) used.insert(domain.group);
+  std::vector<std::string> notes;
+  for (const std::string& group : used) {
+    const DampingLaw& damping = species_.group(group).damping;
+    if (!species_.groups.contains(group))
+      notes.push_back(fmt::format("{} has no law of its own in '{}': it takes that of the level above it",
+                                  group, species_.species));
+    if (!is_monotonic(damping))
+      notes.push_back(
+          fmt::format("{}: with delta {} and kappa {} damping first falls, then rises as it stiffens", group,
+                      damping.delta, damping.kappa));
+  }
+  return notes;
 }
 
 }  // namespace liana

@@ -5,8 +5,8 @@
 #include <mutex>
 #include <string>
 
-#include "materials/pipeline/stopwatch.h"
 #include "mesher/base/progress.h"
+#include "mesher/base/stopwatch.h"
 
 namespace liana {
 

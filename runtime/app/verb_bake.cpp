@@ -1,5 +1,4 @@
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -15,6 +14,7 @@
 #include "runtime/app/bake_table.h"
 #include "runtime/app/terminal_progress.h"
 #include "runtime/app/verbs.h"
+#include "runtime/app/writable.h"
 
 namespace liana {
 namespace {
@@ -27,19 +27,6 @@ struct BakeArguments {
   std::vector<std::string> overrides;
   BakeOptions options;
 };
-
-/// A typo in -o should cost no minutes.
-void require_writable_folder(const fs::path& file) {
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder))
-    throw Error(Error::Kind::Output, folder.string() + ": no such folder",
-                "make it: mkdir -p " + folder.string());
-  if (fs::is_directory(file))
-    throw Error(Error::Kind::Output, file.string() + ": is a folder", "name a file in it");
-  if (access(folder.c_str(), W_OK) != 0)
-    throw Error(Error::Kind::Output, folder.string() + ": cannot be written to",
-                "choose another place with -o");
-}
 
 SpeciesFile read_law(const BakeArguments& arguments) {
   SpeciesFile species = read_species_file(find_species(arguments.species));

@@ -12,10 +12,14 @@ enum ExitCode : int {
   kInputError = 1,   ///< or an output that cannot be written
   kUsageError = 2,   ///< the command line makes no sense
   kPartial = 3,      ///< done, but for parts that are named
+  kNotAsBaked = 4,   ///< verify: something moves otherwise than baked
   kCancelled = 130,  ///< Ctrl-C
 };
 
 void add_bake_verb(CLI::App& app, int& exit_code);
 void add_inspect_verb(CLI::App& app, int& exit_code);
+void add_verify_verb(CLI::App& app, int& exit_code);
+void add_simulate_verb(CLI::App& app, int& exit_code);
+void add_edit_verb(CLI::App& app, int& exit_code);
 
 }  // namespace liana

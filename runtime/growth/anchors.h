@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "runtime/growth/climber_parameters.h"
-#include "runtime/growth/support.h"
+#include "runtime/growth/surroundings.h"
 #include "runtime/sim/plant.h"
 
 namespace liana {

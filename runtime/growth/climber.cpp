@@ -5,6 +5,7 @@
 
 #include "mesher/base/error.h"
 #include "runtime/growth/branching.h"
+#include "runtime/growth/grown_weight.h"
 #include "runtime/growth/light.h"
 #include "runtime/growth/thickening.h"
 #include "runtime/sim/rod_section.h"
@@ -12,7 +13,6 @@
 namespace liana {
 namespace {
 
-constexpr double kGravity = 9.81;          // m/s², that leaves grow their petioles under
 constexpr double kYoungestSegment = 0.25;  // length of a new particle, of a full-grown one's
 constexpr double kThickenEvery = 0.2;      // growth s
 constexpr double kLeafStrand = 0.35;       // of the petiole's radius: what a leaf adds to the stems below
@@ -38,7 +38,7 @@ Climber::Climber(const ClimberParameters& parameters, const SpeciesLaw& law, con
       wander_(random_seed, "growth/wander"),
       branching_(random_seed, "growth/branching"),
       leafing_(random_seed, "growth/leaves"),
-      leaves_(parameters.leaves, kGravity),
+      leaves_(parameters.leaves),
       anchors_(parameters.anchors, parameters.tip_radius),
       crowding_(std::max(parameters.branching.room, 0.02)) {
   const ClimberParameters& p = parameters_;
@@ -66,7 +66,7 @@ GrowthReport Climber::grow(Plant& plant, std::span<const SdfObstacle* const> obs
   GrowthReport report;
   for (size_t i = 0; i < shoots_.size(); ++i)  // grows while it goes on
     if (shoots_[i].growing && grow_tip(plant, shoots_[i], parameters_, around, wander_, dt)) finish_node(plant, i, around);
-  leaves_.grow(plant, around.to_sun, dt, law_);
+  leaves_.grow(plant, around, dt, law_);
   hold_on_again(plant, around);
   anchors_.update(plant, dt);
   if ((since_thickened_ += dt) >= kThickenEvery) {
@@ -76,6 +76,7 @@ GrowthReport Climber::grow(Plant& plant, std::span<const SdfObstacle* const> obs
     since_thickened_ = 0;
   }
   recalibrate_changed(plant, report);
+  carry_grown_weight(plant, parameters_.gravity, rest_);
 
   report.tips = std::count_if(shoots_.begin(), shoots_.end(), [](const Shoot& s) { return s.growing; });
   report.leaves = leaves_.count();
@@ -90,7 +91,7 @@ void Climber::germinate(Plant& plant, const Surroundings& around) {
   const Vec3 up = Vec3::UnitY();
   Vec3 to_support = support ? Vec3(-support->normal) : Vec3::Zero();
   to_support.y() = 0;
-  const Vec3 direction = (up + to_support).normalized();
+  const Vec3 direction = (0.35 * up + to_support).normalized();
   const Vec3 normal = to_support.isZero(1e-9) ? Vec3(Vec3::UnitZ()) : Vec3(-to_support.normalized());
   for (unsigned i = 0; i < parameters_.first_shoots; ++i) {
     // 0, then alternately to the sides: the trunk is the middle one.
@@ -99,6 +100,7 @@ void Climber::germinate(Plant& plant, const Surroundings& around) {
     Shoot shoot{BranchId(), parameters_.tip_radius, course, parameters_.longest_shoot};
     if (i == 0) {
       start_shoot(plant, {ParticleId(), seed_}, BranchId(), direction, shoot);
+      finish_node(plant, 0, around);  // full-grown from the start, and never turned again
     } else {
       const Vec3 turned = Eigen::AngleAxisd(course, normal) * direction;
       start_shoot(plant, {ParticleId(0), Vec3(0, plant.particles[0].half_length, 0)}, BranchId(0), turned, shoot);
@@ -162,7 +164,8 @@ void Climber::finish_node(Plant& plant, size_t index, const Surroundings& around
 
   if ((shoot.since_leaf += parameters_.segment_length) >= parameters_.leaves.step &&
       plant.particles.size() < parameters_.max_particles) {
-    leaves_.sprout(plant, shoot, node, outward, law_, leafing_);
+    leaves_.sprout(plant, shoot, node, support ? support->normal : outward, around,
+                   law_, leafing_);
     shoot.since_leaf = 0;
     young_radius_.push_back(0);
     joint_length_.push_back(0);
@@ -199,12 +202,14 @@ void Climber::recalibrate_changed(Plant& plant, GrowthReport& report) {
   }
   const std::vector<double> carried = carried_masses(plant);
   calibrated_.resize(plant.branches.size());
+  const size_t turns = plant.branches.size() / 100 + 1, count = plant.branches.size();
   for (size_t i = 0; i < plant.branches.size(); ++i) {
     Branch& branch = plant.branches[i];
     double mass = 0;
     for (const ParticleId p : branch.particles) mass += plant.particles[p.index()].mass + carried[p.index()];
     Calibrated& last = calibrated_[i];
-    const double change = parameters_.recalibration;
+    const bool its_turn = (i + count - next_settled_ % count) % count < turns;
+    const double change = its_turn ? parameters_.settled : parameters_.recalibration;
     if (std::abs(branch.length - last.length) <= change * last.length && std::abs(mass - last.mass) <= change * last.mass)
       continue;
     const double scaling = branch.material.mass_scaling;
@@ -217,6 +222,7 @@ void Climber::recalibrate_changed(Plant& plant, GrowthReport& report) {
     if (!recalibrate(plant, BranchId(i), carried, chain_)) ++report.out_of_range;
     ++report.recalibrated;
   }
+  next_settled_ = (next_settled_ + turns) % count;
 }
 
 }  // namespace liana

@@ -59,7 +59,9 @@ class Climber {
   std::vector<double> young_radius_, joint_length_;  // m, per particle
   std::vector<Calibrated> calibrated_;               // per branch
   HeldChain chain_;
+  std::vector<Motion> rest_;
   size_t next_hold_ = 0;       // particle looked at next for a new anchor
+  size_t next_settled_ = 0;    // branch whose turn to be calibrated finely comes next
   double since_thickened_ = 0; // growth s
 };
 

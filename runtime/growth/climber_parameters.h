@@ -11,23 +11,23 @@ namespace liana {
 
 struct TropismParameters {
   double surface_adaption = 4;     ///< τ of [Haedrich17] Eq. 6, rad/s
-  double phototropism = 0.5;       ///< η of Eq. 7, rad/s
+  double phototropism = 0.25;      ///< η of Eq. 7, rad/s
   double climbing = 1.5;           ///< rad/s, towards the shoot's own upward course on the surface
   double wander = 0.5;             ///< rad/√s, random turning on the surface
   double search_radius = 0.6;      ///< m, within which a support is felt
   double cling_gap = 2e-3;         ///< m between stem and surface that a tip keeps
-  double approach_length = 0.06;   ///< m, over which a tip eases from approaching to following the surface
-  double approach_angle = 0.7;     ///< rad to the surface, of a tip far from it
+  double approach_length = 0.025;  ///< m, over which a tip eases from approaching to following the surface
+  double approach_angle = 1.2;     ///< rad to the surface, of a tip far from it
 };
 
 struct BranchingParameters {
-  double probability = 0.3;        ///< of a lateral shoot at a node ([Haedrich17] Table 2: BP)
+  double probability = 0.15;       ///< of a lateral shoot at a node ([Haedrich17] Table 2: BP)
   double variance = 0.3;           ///< V in [0, 1]: 1 lets a lateral leave up to 90° off its usual angle
   double angle = 0.85;             ///< rad between a lateral and its parent
   double falloff = 0.85;           ///< f of t_c = t_p f, tip radius of a lateral over its parent's
   unsigned max_laterals = 1;       ///< per node (Table 2: B)
-  int max_level = 4;
-  double room = 0.07;              ///< m: a bud breaks only where no other stem is that near to its way
+  int max_level = 3;
+  double room = 0.09;              ///< m: a bud breaks only where no other stem is that near to its way
 };
 
 struct LeafParameters {
@@ -62,7 +62,9 @@ struct ClimberParameters {
   double longest_free = 0.35;      ///< m without hold, after which a tip stops
   double pipe_exponent = 2;        ///< n: a stem's rⁿ is the sum of those it carries (pipe model)
   double thickening = 0.12;        ///< 1/s, largest relative growth of a radius
-  double recalibration = 0.04;     ///< relative change of a branch's length or mass that lets it be calibrated anew
+  double recalibration = 0.1;      ///< relative change of a branch's length or mass that lets it be calibrated at once
+  double settled = 5e-3;           ///< the same, of a branch whose turn it is: all take turns, within 2.5 s at 25 ms
+  Vec3 gravity = {0, -9.81, 0};    ///< m/s², that the plant grows under
   size_t max_particles = 4000;     ///< stems and leaves; no bud breaks and no tip goes on beyond it
   TropismParameters tropisms;
   BranchingParameters branching;

@@ -11,6 +11,7 @@ namespace liana {
 namespace {
 
 constexpr double kYoungest = 0.2;  // size of a leaf when it unfolds, of its full size
+constexpr double kClearance = 2e-3;  // m that a growing blade keeps from solids
 
 /// Local +Y along the midrib, +Z (the upper side) as near to `face` as that allows.
 Quat leaf_frame(const Vec3& midrib, const Vec3& face) {
@@ -24,8 +25,8 @@ Quat leaf_frame(const Vec3& midrib, const Vec3& face) {
 
 }  // namespace
 
-BranchId Leaves::sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3& outward, const SpeciesLaw& law,
-                        Random& random) {
+BranchId Leaves::sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3& outward, const Surroundings& around,
+                        const SpeciesLaw& law, Random& random) {
   const LeafParameters& p = parameters_;
   const Vec3 forward = forward_of(plant, node);
   Vec3 side = outward.cross(forward);
@@ -36,6 +37,8 @@ BranchId Leaves::sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3&
   Vec3 midrib = side + 0.35 * forward + vary;
   const double away = midrib.dot(outward);
   midrib += (std::max(away, 0.75) - away) * outward - 0.35 * Vec3::UnitY();
+  const double height = head_of(plant, node).y() - around.ground_height;
+  if (height < p.petiole + p.length) midrib.y() = std::max(midrib.y(), 0.3 * midrib.norm());
 
   const double size = 1 + p.variation * random.uniform(-1, 1);
   Leaf leaf{BranchId(plant.branches.size()), size * p.length, size * p.width, outward};
@@ -72,16 +75,22 @@ void Leaves::resize(Plant& plant, const Leaf& leaf, double size, const SpeciesLa
   branch.length = size * (leaf.full_length + parameters_.petiole);
   branch.material = evaluate(law.group(branch.group), branch.length);
   set_mass(blade, DomainKind::Leaf, law.default_material.density * branch.material.mass_scaling);
-
-  // A leaf grows into the shape that its weight gives it: at rest the joint carries the blade.
-  const Quat parent = plant.motion[blade.parent.index()].orientation;
-  const Mat3 frame = (parent * blade.joint.rest).toRotationMatrix();
-  const Vec3 lift = frame.transpose() * Vec3(0, blade.mass * gravity_, 0);
-  blade.joint.rest_force = lift;
-  blade.joint.rest_moment = (-blade.joint.on_self).cross(lift);
 }
 
-void Leaves::grow(Plant& plant, const Vec3& to_sun, double dt, const SpeciesLaw& law) {
+// A blade that grows against a wall turns away from it, about its joint: tip and both edges are looked at.
+void Leaves::keep_out(Plant& plant, ParticleId id, const Surroundings& around) const {
+  const Particle& blade = plant.particles[id.index()];
+  for (const Vec3& point : {Vec3(0, blade.half_length, 0), Vec3(blade.half_width, 0, 0), Vec3(-blade.half_width, 0, 0)}) {
+    const Motion& motion = plant.motion[id.index()];
+    const Vec3 x = motion.position + motion.orientation * point;
+    const Vec3 way = way_out(x, kClearance, around);
+    if (way.isZero(0)) continue;
+    const Vec3 from = joint_point_of(plant, id);
+    turn_segment(plant, id, Quat::FromTwoVectors(x - from, x + way - from));
+  }
+}
+
+void Leaves::grow(Plant& plant, const Surroundings& around, double dt, const SpeciesLaw& law) {
   const double full = parameters_.seconds_to_full;
   for (size_t i = first_growing_; i < leaves_.size(); ++i) {
     Leaf& leaf = leaves_[i];
@@ -90,9 +99,10 @@ void Leaves::grow(Plant& plant, const Vec3& to_sun, double dt, const SpeciesLaw&
     const ParticleId blade = plant.branches[leaf.branch.index()].particles.front();
     const Vec3 face = plant.motion[blade.index()].orientation * Vec3::UnitZ();
     // To the light, but not into the wall.
-    const Vec3 bright = (to_sun + leaf.outward).stableNormalized();
+    const Vec3 bright = (around.to_sun + leaf.outward).stableNormalized();
     turn_segment(plant, blade, phototropism(face, bright, 0, parameters_.phototropism * dt));
     resize(plant, leaf, kYoungest + (1 - kYoungest) * t * t * (3 - 2 * t), law);
+    keep_out(plant, blade, around);
     if (t >= 1 && i == first_growing_) ++first_growing_;
   }
 }

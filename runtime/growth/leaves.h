@@ -9,13 +9,14 @@ namespace liana {
 
 class Leaves {
  public:
-  explicit Leaves(const LeafParameters& parameters, double gravity) : parameters_(parameters), gravity_(gravity) {}
+  explicit Leaves(const LeafParameters& parameters) : parameters_(parameters) {}
 
-  /// A young leaf at the head of a shoot's full-grown particle. `outward` is the direction away from the support.
-  BranchId sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3& outward, const SpeciesLaw& law, Random& random);
+  /// A young leaf at the head of a shoot's full-grown particle. `outward` (unit) points away from the support.
+  BranchId sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3& outward, const Surroundings& around,
+                  const SpeciesLaw& law, Random& random);
 
   /// Enlarges and turns the leaves that are not full-grown.
-  void grow(Plant& plant, const Vec3& to_sun, double dt, const SpeciesLaw& law);
+  void grow(Plant& plant, const Surroundings& around, double dt, const SpeciesLaw& law);
 
   size_t count() const { return leaves_.size(); }
 
@@ -26,10 +27,10 @@ class Leaves {
     Vec3 outward;                    // unit
     double age = 0;                  // growth s
   };
+  void keep_out(Plant& plant, ParticleId blade, const Surroundings& around) const;
   void resize(Plant& plant, const Leaf& leaf, double size, const SpeciesLaw& law) const;
 
   LeafParameters parameters_;
-  double gravity_;
   std::vector<Leaf> leaves_;
   size_t first_growing_ = 0;  // leaves of one age sprout in order, so the grown ones come first
 };

@@ -7,26 +7,6 @@
 #include "runtime/growth/tropisms.h"
 
 namespace liana {
-namespace {
-
-/// How far out of what solid must the head go? The deepest one decides.
-Vec3 way_out(const Vec3& head, double radius, const Surroundings& around) {
-  double deepest = std::min(0.0, head.y() - around.ground_height - radius);
-  Vec3 way = -deepest * Vec3::UnitY();
-  for (const SdfObstacle* obstacle : around.obstacles) {
-    if (obstacle->distance(head) >= radius + deepest) continue;
-    const SurfacePoint closest = obstacle->closest_point(head);
-    const double gap = closest.distance - radius;
-    if (gap >= deepest) continue;
-    deepest = gap;
-    const bool touching = std::abs(closest.distance) < 1e-9;
-    way = -gap * (touching ? closest.normal : Vec3((head - closest.point) / closest.distance));
-  }
-  return way;
-}
-
-}  // namespace
-
 Vec3 course_on_surface(const Vec3& normal, double course) {
   const Vec3 up = Vec3::UnitY() - normal.y() * normal;
   if (up.norm() < 0.3) return Vec3::Zero();
@@ -53,7 +33,7 @@ Quat tip_turn(const Shoot& shoot, const Vec3& forward, double radius,
   const Vec3 light_on_surface = around.to_sun - around.to_sun.dot(normal) * normal;
   const Quat light = phototropism(forward, light_on_surface.stableNormalized(), 1 - shoot.light,
                                   parameters.phototropism * dt * light_on_surface.norm());
-  const Quat climb = steering(forward, course, parameters.climbing * dt);
+  const Quat climb = steering(forward, course, parameters.climbing * (1 - std::max(0.0, ease)) * dt);
   return Quat(Eigen::AngleAxisd(noise, normal)) * climb * adapt * light;  // Eq. 8 with two rotations more
 }
 

@@ -6,7 +6,7 @@
 
 #include "mesher/base/random.h"
 #include "runtime/growth/climber_parameters.h"
-#include "runtime/growth/support.h"
+#include "runtime/growth/surroundings.h"
 #include "runtime/sim/plant.h"
 
 namespace liana {
@@ -22,13 +22,6 @@ struct Shoot {
   double since_leaf = 0;        ///< m
   unsigned leaves = 0;
   bool growing = true;
-};
-
-/// What a growing part feels of the world.
-struct Surroundings {
-  std::span<const SdfObstacle* const> obstacles;
-  Vec3 to_sun;           ///< unit
-  double ground_height;  ///< m
 };
 
 /// Upwards along a surface of this outward normal, rotated by `course` about it: unit; zero where the surface is

@@ -152,24 +152,16 @@ WorldReport World::report() const {
   return total;
 }
 
-std::vector<const Plant*> World::plants() const {
-  std::vector<const Plant*> plants;
-  for (const auto& inhabitant : inhabitants_) plants.push_back(&inhabitant->plant);
-  return plants;
-}
-
 SimulationStats World::stats() const {
   const WorldReport now = report();
-  SimulationStats stats;
-  stats.time = time();
-  stats.steps = steps_;
-  stats.particles = now.particles;
-  stats.anchors = now.anchors;
-  for (const auto& inhabitant : inhabitants_) stats.branches += inhabitant->plant.branches.size();
-  stats.stage_ms = {{"growth", 1e3 * last_step_.growth},
-                    {"collision", 1e3 * last_step_.collision},
-                    {"physics", 1e3 * last_step_.physics}};
-  return stats;
+  return {.time = time(),
+          .steps = steps_,
+          .particles = now.particles,
+          .anchors = now.anchors,
+          .growth_ms = 1e3 * last_step_.growth,
+          .collision_ms = 1e3 * last_step_.collision,
+          .physics_ms = 1e3 * last_step_.physics,
+          .redone_steps = now.redone_steps};
 }
 
 uint64_t World::state_hash() const {

@@ -39,7 +39,8 @@ class World final : public Simulation {
   void step() override;
   double time_step() const override { return scene_.time_step; }
   void draw(DrawScene& scene) const override;
-  std::vector<const Plant*> plants() const override;
+  size_t plant_count() const override { return inhabitants_.size(); }
+  const Plant& plant(size_t i) const override { return inhabitants_[i]->plant; }
   void set_grab(size_t plant, const WorldSpring& spring) override;
   void clear_grab() override { grabbed_.reset(); }
   SimulationStats stats() const override;

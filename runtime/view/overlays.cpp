@@ -15,7 +15,7 @@ constexpr ImGuiWindowFlags kPlain = ImGuiWindowFlags_NoDecoration | ImGuiWindowF
 void row(const char* name, const char* format, auto value) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
-  ImGui::TextDisabled("%s", name);
+  ImGui::TextColored({0.70f, 0.78f, 0.74f, 1.0f}, "%s", name);
   ImGui::TableNextColumn();
   ImGui::Text(format, value);
 }

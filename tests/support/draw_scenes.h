@@ -116,7 +116,7 @@ inline void add_limb(DrawScene& scene, Dice& dice, Vec3 at, Vec3 way, double len
 inline DrawScene wall_scene() {
   DrawScene scene;
   Dice dice(7);
-  scene.meshes.push_back({box_mesh({-1.7, 0, -0.24}, {1.7, 3, 0}), {0.42, 0.17, 0.105}, true, "wall"});
+  scene.meshes.push_back({box_mesh({-1.7, 0, -0.24}, {1.7, 3, 0}), {0.31, 0.135, 0.09}, true, "wall"});
   scene.meshes.push_back(
       {box_mesh({-1.75, 3, -0.28}, {1.75, 3.06, 0.04}), {0.50, 0.47, 0.42}, false, "coping"});
   for (const double x : {-0.55, -0.1, 0.3}) add_vine(scene, dice, {x, 0.02, 0}, 0.15 * x, 3.1, 0.012, 0);

@@ -81,7 +81,7 @@ void Contacts::notice_new_particles(const Plant& plant, const CollisionScene& sc
   });
   for (size_t i = known; i < plant.particles.size(); ++i) {
     const ParticleId parent = plant.particles[i].parent;
-    exempt_.push_back(inside[i - known] && (!parent.valid() || exempt_[parent.index()]));
+    exempt_.push_back(!parent.valid() || (inside[i - known] && exempt_[parent.index()]));
   }
 }
 

@@ -29,7 +29,7 @@ struct ContactOptions {
 
 struct ContactReport {
   size_t contacts = 0;         ///< springs made
-  size_t exempt = 0;           ///< particles at a plant's base that were inside when first seen
+  size_t exempt = 0;           ///< roots, and particles at a plant's base that were inside when first seen
   double max_penetration = 0;  ///< m, of the state looked at, without exempt particles
 };
 

@@ -8,19 +8,20 @@ void main() {
   vec2 p = world.xz;
   float pixel = length(fwidth(p));
   float patches = fractal(p * 0.7 + 5.0), broad = noise(p * 0.11);
-  float tufts = mix(noise(p * 17.0 + 2.0 * noise(p * 5.0)), 0.5, smoothstep(0.02, 0.10, pixel));
-  float leaning = 1.1 * noise(p * 1.3);
-  vec2 q = mat2(cos(leaning), sin(leaning), -sin(leaning), cos(leaning)) * p;
-  float blades = mix(0.6 * noise(q * vec2(330.0, 75.0)) + 0.4 * noise(q.yx * vec2(270.0, 60.0) + 9.0), 0.5,
-                     smoothstep(0.004, 0.016, pixel));
-  float cover = smoothstep(0.18, 0.40, patches + 0.40 * (tufts - 0.5) + 0.25 * (blades - 0.5));
-  vec3 grass = mix(vec3(0.028, 0.043, 0.012), vec3(0.125, 0.150, 0.048), blades * blades * 1.2 + 0.30 * tufts);
-  grass *= 0.75 + 0.5 * patches;
-  grass = mix(grass, vec3(0.13, 0.125, 0.045), 0.30 * broad);
-  vec3 soil = mix(vec3(0.060, 0.042, 0.024), vec3(0.145, 0.108, 0.066), 0.5 * tufts + 0.6 * blades);
+  // Clumps of 6 cm, tufts of 2 cm, blades of a few mm; each fades out before it is finer than the picture.
+  float clumps = mix(0.5, noise(p * 16.0), 1.0 - smoothstep(0.02, 0.08, pixel));
+  float tufts = mix(0.5, noise(p * 47.0 + 3.0), 1.0 - smoothstep(0.008, 0.03, pixel));
+  vec2 lean = vec2(tufts, clumps) * 3.0;
+  float blades = mix(0.5, 0.5 * noise(p * vec2(420.0, 110.0) + lean) + 0.5 * noise(p * vec2(120.0, 380.0) - lean),
+                     1.0 - smoothstep(0.003, 0.012, pixel));
+  float height = 0.35 * clumps + 0.35 * tufts + 0.30 * blades;
+  float cover = smoothstep(0.16, 0.36, patches + 0.50 * (height - 0.5));
+  vec3 grass = mix(vec3(0.027, 0.043, 0.010), vec3(0.112, 0.140, 0.040), smoothstep(0.15, 0.85, height));
+  grass *= mix(vec3(0.75, 0.88, 0.85), vec3(1.35, 1.18, 1.0), 0.6 * patches + 0.4 * noise(p * 2.9));
+  grass = mix(grass, vec3(0.115, 0.110, 0.045), 0.25 * broad);
+  vec3 soil = mix(vec3(0.055, 0.038, 0.022), vec3(0.150, 0.112, 0.070), smoothstep(0.25, 0.8, height));
   vec3 albedo = mix(soil, grass, cover);
-  vec3 n = bumped(vec3(0.0, 1.0, 0.0), world, 0.016 * tufts + 0.007 * blades);
+  vec3 n = bumped(vec3(0.0, 1.0, 0.0), world, 0.006 * clumps + 0.005 * tufts + 0.003 * blades);
   float sun = max(dot(n, to_sun), 0.0) * sunlit(world, vec3(0.0, 1.0, 0.0));
-  float hollow = 0.55 + 0.45 * blades;
-  fragment = finished(kSunLight * sun * albedo * hollow * 1.3, albedo * hollow * ambient(n), world);
+  fragment = finished(kSunLight * sun * albedo, albedo * ambient(n) * (0.6 + 0.5 * height), world);
 }

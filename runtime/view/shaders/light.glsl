@@ -37,7 +37,7 @@ float fractal(vec2 p) { return 0.5 * noise(p) + 0.3 * noise(2.1 * p + 17.0) + 0.
 // The sky's haze and blue, without clouds or hills: what distant things fade into.
 vec3 sky(vec3 direction) {
   float height = max(direction.y, 0.0), towards = max(dot(direction, to_sun), 0.0);
-  vec3 color = mix(vec3(0.74, 0.86, 0.98), vec3(0.10, 0.30, 0.80), 1.0 - exp(-4.0 * height));
+  vec3 color = mix(vec3(0.62, 0.76, 0.92), vec3(0.08, 0.26, 0.76), 1.0 - exp(-4.0 * height));
   return color + vec3(1.0, 0.80, 0.55) * (0.25 * pow(towards, 8.0) + 0.6 * pow(towards, 120.0));
 }
 
@@ -77,7 +77,7 @@ vec3 bumped(vec3 normal, vec3 world, float height) {
 // what ambient occlusion may take away.
 vec4 finished(vec3 sun_part, vec3 ambient_part, vec3 world) {
   vec3 way = world - eye;
-  float distance = length(way), haze = 1.0 - exp(-pow(distance / 120.0, 1.5));
+  float distance = length(way), haze = 1.0 - exp(-pow(distance / 160.0, 1.3));
   vec3 color = sun_part + ambient_part;
   float share = dot(ambient_part, vec3(1.0)) / max(dot(color, vec3(1.0)), 1e-5) * (1.0 - haze);
   return vec4(developed(mix(color, sky(way / distance), haze)), share);

@@ -22,7 +22,7 @@ void main() {
     float far = 0.085 * ridge(heading, 2.3, 11.0), near = 0.05 * ridge(heading, 5.1, 4.0);
     color = mix(color, vec3(0.36, 0.47, 0.56), smoothstep(edge, -edge, slope - far) * 0.75);
     color = mix(color, vec3(0.25, 0.35, 0.30), smoothstep(edge, -edge, slope - near) * 0.8);
-    color = mix(color, sky(direction), exp(-max(slope, 0.0) * 90.0) * 0.8);
+    color = mix(color, sky(direction), exp(-max(slope, 0.0) * 130.0) * 0.7);
   }
   fragment = vec4(developed(color), 0.0);
 }

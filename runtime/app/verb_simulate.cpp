@@ -1,0 +1,165 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "mesher/base/files.h"
+#include "mesher/base/hash.h"
+#include "mesher/base/stopwatch.h"
+#include "runtime/app/terminal_progress.h"
+#include "runtime/app/verbs.h"
+#include "runtime/app/writable.h"
+#include "runtime/export/gltf_export.h"
+#include "runtime/scene/world.h"
+#include "runtime/view/renderer.h"
+#include "runtime/view/video.h"
+
+namespace liana {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SimulateArguments {
+  fs::path scene, png, mp4, glb, report;
+  std::optional<double> seconds;
+  double video_seconds = 10, sway_seconds = 4;
+  std::vector<int> size = {1280, 720};
+  unsigned threads = 0;
+};
+
+constexpr double kFrameRate = 25;  // per second of video
+
+/// Which steps are filmed: the run in fast motion, then its last seconds at their true pace.
+class Film {
+ public:
+  Film(const SimulateArguments& arguments, size_t steps, double dt) {
+    const double total = static_cast<double>(steps) * dt;
+    const double sway = std::min(arguments.sway_seconds, std::min(total, arguments.video_seconds));
+    const auto fast_frames = static_cast<size_t>(std::lround((arguments.video_seconds - sway) * kFrameRate));
+    const auto sway_frames = static_cast<size_t>(std::lround(sway * kFrameRate));
+    for (size_t i = 1; i <= fast_frames; ++i)
+      times_.push_back((total - sway) * static_cast<double>(i) / static_cast<double>(fast_frames));
+    for (size_t i = 1; i <= sway_frames; ++i)
+      times_.push_back(total - sway + sway * static_cast<double>(i) / static_cast<double>(sway_frames));
+    for (double& time : times_) time = std::min(time, total) - 1e-6 * dt;
+  }
+  size_t frames() const { return times_.size(); }
+  /// Frames due at a time, after those taken before.
+  size_t due(double time) {
+    const size_t before = next_;
+    while (next_ < times_.size() && times_[next_] <= time) ++next_;
+    return next_ - before;
+  }
+
+ private:
+  std::vector<double> times_;  // s
+  size_t next_ = 0;
+};
+
+std::string report_json(const World& world, double total_seconds, double render_seconds) {
+  const WorldReport report = world.report();
+  nlohmann::ordered_json json;
+  json["steps"] = report.steps;
+  json["particles"] = report.particles;
+  json["state_hash"] = hash_text(world.state_hash());
+  json["max_penetration_m"] = report.max_penetration;
+  json["anchors"] = report.anchors;
+  json["redone_steps"] = report.redone_steps;
+  json["lost_steps"] = report.lost_steps;
+  json["seconds"] = {{"total", total_seconds},
+                     {"physics", report.seconds.physics},
+                     {"growth", report.seconds.growth},
+                     {"collision", report.seconds.collision},
+                     {"render", render_seconds}};
+  json["notes"] = world.notes();
+  return json.dump(2) + "\n";
+}
+
+void print_summary(const World& world, double total_seconds, double render_seconds) {
+  const WorldReport report = world.report();
+  const PhaseSeconds& s = report.seconds;
+  fmt::print("{} steps, {} particles, {} anchors, deepest penetration {:.2f} mm, state {}\n", report.steps,
+             report.particles, report.anchors, 1e3 * report.max_penetration, hash_text(world.state_hash()));
+  fmt::print("seconds: growth {:.2f}, collision {:.2f}, physics {:.2f}, render {:.2f}, total {:.2f}\n", s.growth,
+             s.collision, s.physics, render_seconds, total_seconds);
+  if (report.redone_steps > 0) fmt::print("note: {} steps were redone with finer substeps\n", report.redone_steps);
+  if (report.lost_steps > 0) fmt::print("note: {} steps did not stay finite and were stopped\n", report.lost_steps);
+  for (const std::string& note : world.notes()) fmt::print("note: {}\n", note);
+}
+
+int simulate(const SimulateArguments& arguments) {
+  for (const fs::path& output : {arguments.png, arguments.mp4, arguments.glb, arguments.report})
+    if (!output.empty()) require_writable_folder(output);
+  const Stopwatch total;
+  const Scene scene = read_scene(arguments.scene);
+  World world(scene, arguments.threads);
+  const auto steps = static_cast<size_t>(std::lround(arguments.seconds.value_or(scene.seconds) / scene.time_step));
+  const int width = arguments.size[0], height = arguments.size[1];
+
+  double render_seconds = 0;
+  std::optional<HeadlessRenderer> renderer;
+  std::optional<VideoWriter> video;
+  if (!arguments.png.empty() || !arguments.mp4.empty()) renderer.emplace();
+  if (!arguments.mp4.empty()) video.emplace(arguments.mp4, width / 2 * 2, height / 2 * 2, kFrameRate);
+  Film film(arguments, steps, scene.time_step);
+  const Camera camera = world.camera();
+
+  {
+    TerminalProgress progress;
+    progress.begin("simulate", steps);
+    for (size_t i = 1; i <= steps; ++i) {
+      progress.throw_if_cancelled();
+      world.step();
+      const size_t due = film.due(static_cast<double>(i) * scene.time_step);
+      if (video && due > 0) {
+        const Stopwatch watch;
+        const Image frame = renderer->render(world.drawing(), camera, {.width = width / 2 * 2, .height = height / 2 * 2});
+        for (size_t copy = 0; copy < due; ++copy) video->add(frame);
+        render_seconds += watch.seconds();
+      }
+      progress.advance(1);
+    }
+  }
+  const Stopwatch watch;
+  if (video) video->finish();
+  if (!arguments.png.empty())
+    write_png(arguments.png, renderer->render(world.drawing(), camera, still_frame(width, height)));
+  render_seconds += watch.seconds();
+  if (!arguments.glb.empty()) write_gltf(arguments.glb, world.drawing(true));
+  if (!arguments.report.empty())
+    write_file(arguments.report, report_json(world, total.seconds(), render_seconds));
+  print_summary(world, total.seconds(), render_seconds);
+  return kSuccess;
+}
+
+}  // namespace
+
+void add_simulate_verb(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<SimulateArguments>();
+  CLI::App* verb = app.add_subcommand("simulate", "Grow and move a scene without a display: picture, video, glTF");
+  verb->add_option("scene", arguments->scene, "The scene (.toml); see data/scenes")->required();
+  verb->add_option("--seconds", arguments->seconds, "Simulated time [what the scene says]")
+      ->check(CLI::Range(0.0, 86400.0));
+  verb->add_option("--png", arguments->png, "Write a picture of the end");
+  verb->add_option("--mp4", arguments->mp4, "Write a video: the run in fast motion, its end at its true pace");
+  verb->add_option("--video-seconds", arguments->video_seconds, "Length of the video")
+      ->check(CLI::Range(0.1, 3600.0))->capture_default_str();
+  verb->add_option("--true-pace", arguments->sway_seconds, "How many of them are at the true pace, at the end")
+      ->check(CLI::Range(0.0, 3600.0))->capture_default_str();
+  verb->add_option("--size", arguments->size, "Width and height in pixels [1280 720]")
+      ->expected(2)->check(CLI::Range(16, 8192));
+  verb->add_option("--export", arguments->glb, "Write the end as glTF (.glb)");
+  verb->add_option("--report", arguments->report, "Write counts, state hash and timings as JSON");
+  verb->add_option("--threads", arguments->threads, "Threads to use [all cores]; the result does not depend on it")
+      ->check(CLI::Range(0, 1024));
+  verb->footer(
+      "Example:\n"
+      "  liana simulate data/scenes/wall.toml --seconds 60 --png wall.png --mp4 wall.mp4 --export wall.glb\n\n"
+      "Exit code: 0 done, 1 bad input, 2 bad command line, 130 stopped by Ctrl-C");
+  verb->callback([arguments, &exit_code] { exit_code = simulate(*arguments); });
+}
+
+}  // namespace liana
