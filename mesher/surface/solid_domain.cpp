@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "mesher/base/error.h"
 #include "mesher/base/mesh_checks.h"
@@ -82,11 +83,13 @@ Rooted sheet(const Mesh& shell, const std::vector<std::vector<uint32_t>>& loops,
   result.route = "sheet-extruded";
   const std::vector<std::vector<uint8_t>> marked = root_edges(shell, loops, attachment);
   std::vector<uint8_t> source(shell.positions.size(), 0);
+  std::set<std::pair<uint32_t, uint32_t>> root;  // border edges; cuts never touch them, their distance is 0
   for (size_t l = 0; l < loops.size(); ++l)
     for (size_t i = 0; i < loops[l].size(); ++i) {
       const uint32_t a = loops[l][i], b = loops[l][(i + 1) % loops[l].size()];
       if (!marked[l][i]) continue;
       source[a] = source[b] = 1;
+      root.insert({a, b});
       result.diameter += (shell.positions[a] - shell.positions[b]).norm();
     }
   MarkedSurface graded{shell, geodesic_distance(shell, source),
@@ -102,16 +105,10 @@ Rooted sheet(const Mesh& shell, const std::vector<std::vector<uint32_t>>& loops,
   result.surface.distance.insert(result.surface.distance.end(), graded.distance.begin(),
                                  graded.distance.end());
   result.surface.is_root.assign(2 * graded.mesh.triangles.size(), 0);
-  // Cuts never touch the root edges (their distance is 0), so their ends are still neighbours on the border.
   for (const std::vector<uint32_t>& loop : border)
-    for (size_t i = 0; i < loop.size(); ++i) {
-      const uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
-      bool is_root = false;
-      for (size_t l = 0; l < loops.size(); ++l)
-        for (size_t k = 0; k < loops[l].size(); ++k)
-          is_root = is_root || (marked[l][k] && loops[l][k] == a && loops[l][(k + 1) % loops[l].size()] == b);
-      result.surface.is_root.insert(result.surface.is_root.end(), 2, is_root);
-    }
+    for (size_t i = 0; i < loop.size(); ++i)
+      result.surface.is_root.insert(result.surface.is_root.end(), 2,
+                                    root.contains({loop[i], loop[(i + 1) % loop.size()]}));
   return result;
 }
 
@@ -151,6 +148,10 @@ SolidDomain make_solid(const SegmentedPlant& plant, DomainId id) {
   solid.volume = signed_volume(rooted.surface.mesh);
   if (!std::isfinite(solid.length) || !(solid.length > 0))
     throw fail("it has no length", "check its surface");
+  const Adjacency closed = find_adjacency(rooted.surface.mesh);
+  if (!closed.manifold || !closed.oriented || !closed.closed)
+    throw fail("its surface touches itself where it is open",
+               "separate the edges of its holes, or close them");
   if (self_intersects(rooted.surface.mesh))
     throw fail("its surface passes through itself once closed",
                "straighten bends sharper than the branch is thick, or remove inner faces");

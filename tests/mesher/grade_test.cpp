@@ -51,7 +51,8 @@ TEST(Grade, GivesABarePrismTheWantedRingsAndKeepsItsShape) {
     std::set<long> heights;  // in nanometres
     for (const Vec3& p : surface.mesh.positions) heights.insert(std::lround(p.y() * 1e9));
     EXPECT_EQ(heights.size(), levels.size() + 2);
-    // Six vertices a ring, none on the diagonals of the flat sides: twelve triangles between rings, six a cap.
+    // Six vertices a ring, none on the diagonals of the flat sides: twelve triangles between rings, six a
+    // cap.
     EXPECT_EQ(surface.mesh.triangles.size(), 12 * (levels.size() + 1) + 12);
     EXPECT_EQ(surface.mesh.positions.size(), 6 * (levels.size() + 2) + 2);
     // Every cut adds rounding of 1 ulp of a coordinate only.

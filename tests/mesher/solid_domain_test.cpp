@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "mesher/base/error.h"
 #include "mesher/base/mesh_checks.h"
@@ -368,6 +369,53 @@ TEST(SolidDomain, SaysWhyADomainCannotBeMadeSolid) {
   envelope.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)};
   envelope.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
   expect(reason(envelope), "no volume");
+}
+
+TEST(SolidDomain, DamagedSurfacesEndInASolidOrInAReason) {
+  const SegmentedPlant plain = make_small_plant();
+  std::mt19937 random(3);
+  int solids = 0, refused = 0;
+  for (int round = 0; round < 400; ++round) {
+    SegmentedPlant plant = plain;
+    const size_t which = random() % plant.domains.size();
+    Mesh& mesh = plant.domains[which].surface;
+    for (unsigned harm = 0; harm <= random() % 4; ++harm) {
+      const size_t t = random() % mesh.triangles.size(), v = random() % mesh.positions.size();
+      switch (random() % 7) {
+        case 0:
+          mesh.triangles.erase(mesh.triangles.begin() + static_cast<ptrdiff_t>(t));
+          break;
+        case 1:
+          std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
+          break;
+        case 2:
+          mesh.triangles.push_back(mesh.triangles[t]);
+          break;
+        case 3:
+          mesh.positions[v] = mesh.positions[random() % mesh.positions.size()];
+          break;
+        case 4:
+          mesh.positions[v].x() += 1e-3 * double(random() % 40 + 1);
+          break;
+        case 5:
+          mesh.triangles[t][random() % 3] = static_cast<uint32_t>(v);
+          break;
+        case 6:
+          for (Vec3& p : mesh.positions) p.y() = 0;
+          break;
+      }
+    }
+    mesh = weld(mesh);
+    try {
+      expect_valid(make_solid(plant, DomainId(which)), std::to_string(round));
+      ++solids;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind, Error::Kind::Input);
+      ++refused;
+    }
+  }
+  EXPECT_GT(solids, 50);
+  EXPECT_GT(refused, 50);
 }
 
 TEST(SolidDomain, EveryDomainOfTheShippedAndSupportPlantsBecomesSolid) {
