@@ -103,7 +103,7 @@ void element_stiffness(Element element, const TetGeometry& tet, const LameConsta
       const Mat3 P = tet.volume * tet.gradients[k] * tet.gradients[l].transpose();
       Q[k][l] = lame.lambda * P + lame.mu * P.transpose();
       Q[k][l].diagonal().array() += lame.mu * P.trace();
-      Q[l][k] = Q[k][l].transpose();
+      if (k != l) Q[l][k] = Q[k][l].transpose();
     }
   }
   if (element == Element::T4) {

@@ -200,7 +200,7 @@ TEST_F(BadSurface,
 }
 
 // TetGen's library finds the symbol by the dynamic linker, as here. Without the guard the test would abort.
-TEST(AssertionGuard, TurnsAssertionsOfLibrariesIntoFailure) {
+TEST(AssertionGuardDeathTest, TurnsAssertionsOfLibrariesIntoFailure) {
   using AssertFail = void (*)(const char*, const char*, unsigned, const char*);
   const auto fail = reinterpret_cast<AssertFail>(dlsym(RTLD_DEFAULT, "__assert_fail"));
   ASSERT_NE(fail, nullptr);
