@@ -87,6 +87,13 @@ TetGeometry tet_geometry(const std::array<Vec3, 4>& corners) {
   return tet;
 }
 
+TetGeometry element_geometry(const NodeMesh& mesh, size_t element, double length) {
+  const auto nodes = mesh.element(element);
+  std::array<Vec3, 4> corners;
+  for (int k = 0; k < 4; ++k) corners[k] = (mesh.positions[nodes[k]] - mesh.positions[nodes[0]]) / length;
+  return tet_geometry(corners);
+}
+
 void element_stiffness(Element element, const TetGeometry& tet, const LameConstants& lame,
                        std::span<Mat3> blocks) {
   // Q_kl = V (λ g_k g_lᵀ + μ g_l g_kᵀ + μ (g_k·g_l) I); the map from outer products to blocks is linear.

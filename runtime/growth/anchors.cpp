@@ -6,12 +6,16 @@
 
 namespace liana {
 
-bool Anchors::attach(Plant& plant, ParticleId particle, std::span<const SdfObstacle* const> obstacles) {
+bool Anchors::attach(Plant& plant, ParticleId particle, const Surroundings& around) {
   if (holds(particle)) return true;
   require(records_.size() == plant.anchors.size(), "all anchors of a climber are its own");
   const Particle& segment = plant.particles[particle.index()];
   const Motion& motion = plant.motion[particle.index()];
-  const auto support = closest_support(obstacles, motion.position, segment.half_width + parameters_.touch_gap);
+  const double reach = segment.half_width + parameters_.touch_gap;
+  auto support = closest_support(around.obstacles, motion.position, reach);
+  const double height = motion.position.y() - around.ground_height;
+  if (!support && height <= reach)
+    support = {motion.position - height * Vec3::UnitY(), Vec3::UnitY(), height};
   if (!support) return false;
 
   Record record;

@@ -1,10 +1,10 @@
 // Where a climber holds on: [Haedrich17] Eq. 5 as springs of finite strength.
 //
-// The paper moves a particle by φ(x_anchor - x) each step, φ growing with the particle; a spring that grows with the
-// particle's width does the same through the solver, and pulls with a force that the plant can tear off from.
+// The paper moves a particle by φ(x_anchor - x) each step, φ growing with the particle; a spring that grows
+// with the particle's width does the same through the solver, and pulls with a force that the plant can tear
+// off from.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "runtime/growth/climber_parameters.h"
@@ -18,24 +18,23 @@ class Anchors {
   explicit Anchors(const AnchorParameters& parameters, double young_radius)
       : parameters_(parameters), young_radius_(young_radius) {}
 
-  /// Anchors a particle to the closest surface if it is near enough and not anchored yet. True when it holds on now.
-  bool attach(Plant& plant, ParticleId particle, std::span<const SdfObstacle* const> obstacles);
+  /// Anchors a particle to the closest surface, or to the ground, if that is near enough. True when it holds
+  /// on now.
+  bool attach(Plant& plant, ParticleId particle, const Surroundings& around);
 
   /// Hardens anchors, lets them follow the stem's thickness, and releases those pulled beyond the distance.
   void update(Plant& plant, double dt_growth);
 
-  bool holds(ParticleId particle) const {
-    return particle.index() < held_.size() && held_[particle.index()];
-  }
+  bool holds(ParticleId particle) const { return particle.index() < held_.size() && held_[particle.index()]; }
   size_t count() const { return records_.size(); }
   size_t released() const { return released_; }  ///< so far
 
  private:
   struct Record {
-    Vec3 away;           // unit, particle's frame: from the surface to the axis
-    double along;        // m along the axis from the centre
-    double gap;          // m between stem and surface when it was made
-    double age = 0;      // growth s
+    Vec3 away;       // unit, particle's frame: from the surface to the axis
+    double along;    // m along the axis from the centre
+    double gap;      // m between stem and surface when it was made
+    double age = 0;  // growth s
   };
   AnchorParameters parameters_;
   double young_radius_;

@@ -4,8 +4,9 @@
 
 namespace liana {
 
-std::vector<Bud> breaking_buds(const Shoot& shoot, int level, const Vec3& node, const Vec3& forward, const Vec3& outward,
-                               const BranchingParameters& parameters, const Crowding& crowding, Random& random) {
+std::vector<Bud> breaking_buds(const Shoot& shoot, int level, const Vec3& node, const Vec3& forward,
+                               const Vec3& outward, const BranchingParameters& parameters,
+                               const Crowding& crowding, Random& random) {
   std::vector<Bud> buds;
   if (level >= parameters.max_level) return buds;
   for (unsigned i = 0; i < parameters.max_laterals; ++i) {
@@ -17,7 +18,8 @@ std::vector<Bud> breaking_buds(const Shoot& shoot, int level, const Vec3& node, 
     const double angle = side * (parameters.angle + off);
     const Vec3 direction = (Eigen::AngleAxisd(angle, outward) * forward).normalized();
     if (crowding.crowded(node + 1.5 * parameters.room * direction, parameters.room, BranchId())) continue;
-    buds.push_back({direction, std::clamp(shoot.course + angle, -1.4, 1.4), shoot.tip_radius * parameters.falloff});
+    buds.push_back(
+        {direction, std::clamp(shoot.course + angle, -1.4, 1.4), shoot.tip_radius * parameters.falloff});
   }
   return buds;
 }

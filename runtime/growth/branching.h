@@ -14,9 +14,11 @@ struct Bud {
   double tip_radius;  ///< m: t_c = t_p f
 };
 
-/// The buds that break at the head of a full-grown particle: at most max_laterals, each with the given probability and
-/// direction variance ([Haedrich17] §4.3), and only where there is room. `outward` is away from the support.
-std::vector<Bud> breaking_buds(const Shoot& shoot, int level, const Vec3& node, const Vec3& forward, const Vec3& outward,
-                               const BranchingParameters& parameters, const Crowding& crowding, Random& random);
+/// The buds that break at the head of a full-grown particle: at most max_laterals, each with the given
+/// probability and direction variance ([Haedrich17] §4.3), and only where there is room. `outward` is away
+/// from the support.
+std::vector<Bud> breaking_buds(const Shoot& shoot, int level, const Vec3& node, const Vec3& forward,
+                               const Vec3& outward, const BranchingParameters& parameters,
+                               const Crowding& crowding, Random& random);
 
 }  // namespace liana

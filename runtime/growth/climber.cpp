@@ -45,34 +45,39 @@ Climber::Climber(const ClimberParameters& parameters, const SpeciesLaw& law, con
   check(seed_position.allFinite(), "a climber's seed is not at a finite place");
   check(p.elongation > 0 && p.elongation < 1, "a climber's elongation is not between 0 and 1 m/s");
   check(p.segment_length >= 5e-3 && p.segment_length <= 1, "a climber's segments are not 5 mm to 1 m long");
-  check(p.tip_radius > 1e-5 && p.tip_radius < p.segment_length / 2, "a climber's tip is too thin or too thick");
+  check(p.tip_radius > 1e-5 && p.tip_radius < p.segment_length / 2,
+        "a climber's tip is too thin or too thick");
   check(p.first_shoots >= 1 && p.first_shoots <= 64, "a climber needs 1 to 64 first shoots");
   check(p.pipe_exponent >= 1 && p.pipe_exponent <= 4, "a climber's pipe exponent is not between 1 and 4");
   check(p.leaves.step > 0 && p.leaves.length > 0 && p.leaves.width > 0 && p.leaves.thickness > 0 &&
             p.leaves.petiole > 0 && p.leaves.petiole_radius > 0 && p.leaves.seconds_to_full > 0 &&
             p.leaves.variation >= 0 && p.leaves.variation < 1,
         "a climber's leaves have no size");
-  check(p.branching.variance >= 0 && p.branching.variance <= 1 && p.branching.falloff > 0 && p.branching.falloff <= 1,
+  check(p.branching.variance >= 0 && p.branching.variance <= 1 && p.branching.falloff > 0 &&
+            p.branching.falloff <= 1,
         "a climber's branching variance or falloff is not between 0 and 1");
   check(p.max_particles >= 1 && p.max_particles <= 1'000'000, "a climber may have 1 to 1,000,000 particles");
   law_.group("level0"), law_.group("leaf");
 }
 
-GrowthReport Climber::grow(Plant& plant, std::span<const SdfObstacle* const> obstacles, const Vec3& to_sun, double dt) {
+GrowthReport Climber::grow(Plant& plant, std::span<const SdfObstacle* const> obstacles, const Vec3& to_sun,
+                           double dt) {
   require(dt >= 0 && dt <= 0.1, "growth goes in steps of at most 0.1 s");
   const Surroundings around{obstacles, to_sun.normalized(), seed_.y()};
   if (plant.particles.empty()) germinate(plant, around);
 
   GrowthReport report;
   for (size_t i = 0; i < shoots_.size(); ++i)  // grows while it goes on
-    if (shoots_[i].growing && grow_tip(plant, shoots_[i], parameters_, around, wander_, dt)) finish_node(plant, i, around);
+    if (shoots_[i].growing && grow_tip(plant, shoots_[i], parameters_, around, wander_, dt))
+      finish_node(plant, i, around);
   leaves_.grow(plant, around, dt, law_);
   hold_on_again(plant, around);
   anchors_.update(plant, dt);
   if ((since_thickened_ += dt) >= kThickenEvery) {
-    thicken(plant, young_radius_, joint_length_,
-            {parameters_.pipe_exponent, kLeafStrand * parameters_.leaves.petiole_radius, parameters_.thickening},
-            law_.default_material, since_thickened_);
+    thicken(
+        plant, young_radius_, joint_length_,
+        {parameters_.pipe_exponent, kLeafStrand * parameters_.leaves.petiole_radius, parameters_.thickening},
+        law_.default_material, since_thickened_);
     since_thickened_ = 0;
   }
   recalibrate_changed(plant, report);
@@ -85,30 +90,27 @@ GrowthReport Climber::grow(Plant& plant, std::span<const SdfObstacle* const> obs
   return report;
 }
 
-// The first shoot is the trunk, rooted at the seed; the others start at its first head, in a fan along the support.
+// Every first shoot stands in the ground by itself, beside the others, and leans towards the support in a
+// fan.
 void Climber::germinate(Plant& plant, const Surroundings& around) {
   const auto support = closest_support(around.obstacles, seed_, parameters_.tropisms.search_radius);
-  const Vec3 up = Vec3::UnitY();
   Vec3 to_support = support ? Vec3(-support->normal) : Vec3::Zero();
   to_support.y() = 0;
-  const Vec3 direction = (0.35 * up + to_support).normalized();
-  const Vec3 normal = to_support.isZero(1e-9) ? Vec3(Vec3::UnitZ()) : Vec3(-to_support.normalized());
-  for (unsigned i = 0; i < parameters_.first_shoots; ++i) {
-    // 0, then alternately to the sides: the trunk is the middle one.
-    const unsigned step = (i + 1) / 2, steps = std::max(1u, parameters_.first_shoots / 2);
-    const double course = parameters_.fan * step / steps * (i % 2 ? 1 : -1);
-    Shoot shoot{BranchId(), parameters_.tip_radius, course, parameters_.longest_shoot};
-    if (i == 0) {
-      start_shoot(plant, {ParticleId(), seed_}, BranchId(), direction, shoot);
-      finish_node(plant, 0, around);  // full-grown from the start, and never turned again
-    } else {
-      const Vec3 turned = Eigen::AngleAxisd(course, normal) * direction;
-      start_shoot(plant, {ParticleId(0), Vec3(0, plant.particles[0].half_length, 0)}, BranchId(0), turned, shoot);
-    }
+  const Vec3 up = Vec3::UnitY(), direction = (0.35 * up + to_support).normalized();
+  const Vec3 normal = to_support.norm() > 1e-3 ? Vec3(-to_support.normalized()) : Vec3(Vec3::UnitZ());
+  const int count = static_cast<int>(parameters_.first_shoots);
+  for (int i = 0; i < count; ++i) {
+    const double place = count > 1 ? 2.0 * i / (count - 1) - 1 : 0;  // -1 … 1
+    const Shoot shoot{BranchId(), parameters_.tip_radius, place * parameters_.fan, parameters_.longest_shoot};
+    const Vec3 beside = 6 * parameters_.tip_radius * (i - (count - 1) / 2.0) * normal.cross(up);
+    start_shoot(plant, {ParticleId(), seed_ - beside}, BranchId(),
+                Eigen::AngleAxisd(shoot.course, normal) * direction, shoot);
+    finish_node(plant, shoots_.size() - 1, around);  // full-grown from the start
   }
 }
 
-void Climber::start_shoot(Plant& plant, const Attachment& at, BranchId parent, const Vec3& direction, Shoot shoot) {
+void Climber::start_shoot(Plant& plant, const Attachment& at, BranchId parent, const Vec3& direction,
+                          Shoot shoot) {
   Branch branch;
   branch.parent = parent;
   branch.level = parent.valid() ? plant.branches[parent.index()].level + 1 : 0;
@@ -119,8 +121,9 @@ void Climber::start_shoot(Plant& plant, const Attachment& at, BranchId parent, c
   shoots_.push_back(shoot);
 }
 
-ParticleId Climber::append_stem(Plant& plant, const Shoot& shoot, const Attachment& at, const Quat& orientation) {
-  // The first particle of a plant is full-grown: it is what the seed was.
+ParticleId Climber::append_stem(Plant& plant, const Shoot& shoot, const Attachment& at,
+                                const Quat& orientation) {
+  // The first particle of a stem from the seed is full-grown: it is what the seed was.
   const double length = parameters_.segment_length * (at.parent.valid() ? kYoungestSegment : 1);
   const SegmentShape shape{length / 2, shoot.tip_radius, shoot.tip_radius};
   const ParticleId id = append_segment(plant, shoot.branch, at, shape, orientation);
@@ -136,9 +139,10 @@ ParticleId Climber::append_stem(Plant& plant, const Shoot& shoot, const Attachme
   set_mass(particle, DomainKind::Branch, law_.default_material.density * branch.material.mass_scaling);
   // For its full length, so that lengthening does not change it.
   const ElasticMaterial& material = law_.default_material;
-  set_section(particle.joint,
-              rod_section(material.youngs_modulus, material.poisson_ratio, shoot.tip_radius, shoot.tip_radius, 1),
-              parameters_.segment_length, branch.stiffness_scale);
+  set_section(
+      particle.joint,
+      rod_section(material.youngs_modulus, material.poisson_ratio, shoot.tip_radius, shoot.tip_radius, 1),
+      parameters_.segment_length, branch.stiffness_scale);
   if (branch.particles.size() > 1) {
     const Particle& before = plant.particles[at.parent.index()];
     particle.mass_damping = before.mass_damping;
@@ -147,7 +151,8 @@ ParticleId Climber::append_stem(Plant& plant, const Shoot& shoot, const Attachme
   return id;
 }
 
-// A particle is full-grown: it holds on, bears a leaf and perhaps lateral shoots, and the tip goes on from its head.
+// A particle is full-grown: it holds on, bears a leaf and perhaps lateral shoots, and the tip goes on from
+// its head.
 void Climber::finish_node(Plant& plant, size_t index, const Surroundings& around) {
   Shoot shoot = shoots_[index];
   const BranchId branch = shoot.branch;
@@ -158,14 +163,13 @@ void Climber::finish_node(Plant& plant, size_t index, const Surroundings& around
   const Attachment here{node, Vec3(0, plant.particles[node.index()].half_length, 0)};
 
   shoot.free_length =
-      anchors_.attach(plant, node, around.obstacles) ? 0 : shoot.free_length + parameters_.segment_length;
+      anchors_.attach(plant, node, around) ? 0 : shoot.free_length + parameters_.segment_length;
   shoot.light += (1 - occlusion(around.obstacles, head + 1e-3 * outward, around.to_sun) - shoot.light) / 3;
   crowding_.add(head, branch);
 
   if ((shoot.since_leaf += parameters_.segment_length) >= parameters_.leaves.step &&
       plant.particles.size() < parameters_.max_particles) {
-    leaves_.sprout(plant, shoot, node, support ? support->normal : outward, around,
-                   law_, leafing_);
+    leaves_.sprout(plant, shoot, node, support ? support->normal : outward, around, law_, leafing_);
     shoot.since_leaf = 0;
     young_radius_.push_back(0);
     joint_length_.push_back(0);
@@ -173,10 +177,12 @@ void Climber::finish_node(Plant& plant, size_t index, const Surroundings& around
   for (const Bud& bud : breaking_buds(shoot, plant.branches[branch.index()].level, head, forward, outward,
                                       parameters_.branching, crowding_, branching_))
     if (plant.particles.size() < parameters_.max_particles)
-      start_shoot(plant, here, branch, bud.direction, {BranchId(), bud.tip_radius, bud.course, shoot.longest / 2, shoot.light});
+      start_shoot(plant, here, branch, bud.direction,
+                  {BranchId(), bud.tip_radius, bud.course, shoot.longest / 2, shoot.light});
 
   shoot.growing = plant.branches[branch.index()].length < shoot.longest &&
-                  shoot.free_length < parameters_.longest_free && plant.particles.size() < parameters_.max_particles;
+                  shoot.free_length < parameters_.longest_free &&
+                  plant.particles.size() < parameters_.max_particles;
   if (shoot.growing) append_stem(plant, shoot, here, plant.motion[node.index()].orientation);
   shoots_[index] = shoot;
 }
@@ -189,7 +195,7 @@ void Climber::hold_on_again(Plant& plant, const Surroundings& around) {
     const Particle& particle = plant.particles[next_hold_];
     const bool stem = plant.branches[particle.branch.index()].kind == DomainKind::Branch;
     const bool grown = 2 * particle.half_length >= parameters_.segment_length * (1 - 1e-9);
-    if (stem && grown && particle.parent.valid()) anchors_.attach(plant, id, around.obstacles);
+    if (stem && grown && particle.parent.valid()) anchors_.attach(plant, id, around);
   }
 }
 
@@ -210,7 +216,8 @@ void Climber::recalibrate_changed(Plant& plant, GrowthReport& report) {
     Calibrated& last = calibrated_[i];
     const bool its_turn = (i + count - next_settled_ % count) % count < turns;
     const double change = its_turn ? parameters_.settled : parameters_.recalibration;
-    if (std::abs(branch.length - last.length) <= change * last.length && std::abs(mass - last.mass) <= change * last.mass)
+    if (std::abs(branch.length - last.length) <= change * last.length &&
+        std::abs(mass - last.mass) <= change * last.mass)
       continue;
     const double scaling = branch.material.mass_scaling;
     branch.material = evaluate(law_.group(branch.group), branch.length);

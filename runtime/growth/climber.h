@@ -1,4 +1,5 @@
-// A climbing plant that grows from a seed: [Haedrich17] §4.2-4.3 on oriented particles that swing as their law says.
+// A climbing plant that grows from a seed: [Haedrich17] §4.2-4.3 on oriented particles that swing as their
+// law says.
 #pragma once
 
 #include <span>
@@ -15,7 +16,7 @@
 namespace liana {
 
 struct GrowthReport {
-  size_t tips = 0;          ///< shoots that still grow
+  size_t tips = 0;  ///< shoots that still grow
   size_t leaves = 0;
   size_t anchors = 0;
   size_t released = 0;      ///< anchors torn off so far
@@ -23,17 +24,21 @@ struct GrowthReport {
   size_t out_of_range = 0;  ///< of these, how many the time step cannot swing as fast as their law says
 };
 
-/// Owns what growth needs to know besides the plant. One climber grows one plant, from empty, and is the only one that
-/// adds particles, branches or anchors to it. Deterministic: the same seed and calls grow the same plant.
+/// Owns what growth needs to know besides the plant. One climber grows one plant, from empty, and is the only
+/// one that adds particles, branches or anchors to it. Deterministic: the same seed and calls grow the same
+/// plant.
 class Climber {
  public:
-  /// seed_position (m) is on the ground, which is taken to be level there. Throws Error{Input} for parameters out of
-  /// range or a law without the groups "level0" and "leaf".
-  Climber(const ClimberParameters& parameters, const SpeciesLaw& law, const Vec3& seed_position, uint64_t random_seed);
+  /// seed_position (m) is on the ground, which is taken to be level there. Throws Error{Input} for parameters
+  /// out of range or a law without the groups "level0" and "leaf".
+  Climber(const ClimberParameters& parameters, const SpeciesLaw& law, const Vec3& seed_position,
+          uint64_t random_seed);
 
-  /// Lets the plant grow by dt_growth (growth s, at most 0.1) from its present, moving state: call it between time steps
-  /// with a multiple of their dt. to_sun need not be unit. The plant's time scheme must be set before.
-  GrowthReport grow(Plant& plant, std::span<const SdfObstacle* const> obstacles, const Vec3& to_sun, double dt_growth);
+  /// Lets the plant grow by dt_growth (growth s, at most 0.1) from its present, moving state: call it between
+  /// time steps with a multiple of their dt. to_sun need not be unit. The plant's time scheme must be set
+  /// before.
+  GrowthReport grow(Plant& plant, std::span<const SdfObstacle* const> obstacles, const Vec3& to_sun,
+                    double dt_growth);
 
   const ClimberParameters& parameters() const { return parameters_; }
 
@@ -60,9 +65,9 @@ class Climber {
   std::vector<Calibrated> calibrated_;               // per branch
   HeldChain chain_;
   std::vector<Motion> rest_;
-  size_t next_hold_ = 0;       // particle looked at next for a new anchor
-  size_t next_settled_ = 0;    // branch whose turn to be calibrated finely comes next
-  double since_thickened_ = 0; // growth s
+  size_t next_hold_ = 0;        // particle looked at next for a new anchor
+  size_t next_settled_ = 0;     // branch whose turn to be calibrated finely comes next
+  double since_thickened_ = 0;  // growth s
 };
 
 }  // namespace liana

@@ -1,6 +1,7 @@
 // Everything a user can set of a climbing plant's growth. The defaults make an ivy that climbs 3 m in 45 s.
 //
-// Growth seconds are simulated seconds times a speed of the user's choice; all rates here are per growth second.
+// Growth seconds are simulated seconds times a speed of the user's choice; all rates here are per growth
+// second.
 #pragma once
 
 #include <cstddef>
@@ -21,26 +22,26 @@ struct TropismParameters {
 };
 
 struct BranchingParameters {
-  double probability = 0.15;       ///< of a lateral shoot at a node ([Haedrich17] Table 2: BP)
-  double variance = 0.3;           ///< V in [0, 1]: 1 lets a lateral leave up to 90° off its usual angle
-  double angle = 0.85;             ///< rad between a lateral and its parent
-  double falloff = 0.85;           ///< f of t_c = t_p f, tip radius of a lateral over its parent's
-  unsigned max_laterals = 1;       ///< per node (Table 2: B)
+  double probability = 0.08;  ///< of a lateral shoot at a node ([Haedrich17] Table 2: BP)
+  double variance = 0.3;      ///< V in [0, 1]: 1 lets a lateral leave up to 90° off its usual angle
+  double angle = 0.85;        ///< rad between a lateral and its parent
+  double falloff = 0.85;      ///< f of t_c = t_p f, tip radius of a lateral over its parent's
+  unsigned max_laterals = 1;  ///< per node (Table 2: B)
   int max_level = 3;
-  double room = 0.09;              ///< m: a bud breaks only where no other stem is that near to its way
+  double room = 0.1;  ///< m: a bud breaks only where no other stem is that near to its way
 };
 
 struct LeafParameters {
-  double step = 0.04;              ///< m of stem between leaves (phyllotaxis)
-  double divergence = kPi;         ///< rad about the stem from leaf to leaf; π: left, right, left, as ivy on a wall
-  double length = 0.055;           ///< m, of the full-grown blade
-  double width = 0.055;            ///< m
-  double thickness = 3e-4;         ///< m
-  double petiole = 0.03;           ///< m
-  double petiole_radius = 8e-4;    ///< m
-  double variation = 0.25;         ///< of size and direction, random
-  double seconds_to_full = 6;      ///< growth seconds
-  double phototropism = 0.25;      ///< rad/s, of the blade while it grows
+  double step = 0.04;       ///< m of stem between leaves (phyllotaxis)
+  double divergence = kPi;  ///< rad about the stem from leaf to leaf; π: left, right, left, as ivy on a wall
+  double length = 0.055;    ///< m, of the full-grown blade
+  double width = 0.055;     ///< m
+  double thickness = 3e-4;  ///< m
+  double petiole = 0.03;    ///< m
+  double petiole_radius = 8e-4;  ///< m
+  double variation = 0.25;       ///< of size and direction, random
+  double seconds_to_full = 6;    ///< growth seconds
+  double phototropism = 0.25;    ///< rad/s, of the blade while it grows
 };
 
 struct AnchorParameters {
@@ -52,20 +53,21 @@ struct AnchorParameters {
 };
 
 struct ClimberParameters {
-  double elongation = 0.085;       ///< m/s of a fully lit tip
-  double shade = 0.5;              ///< what full shade leaves of that
-  double segment_length = 0.045;   ///< m, of a full-grown particle
-  double tip_radius = 1.2e-3;      ///< m, of the first shoots
-  unsigned first_shoots = 5;       ///< from one seed
-  double fan = 1.0;                ///< rad: their courses spread from -fan to +fan about upwards
-  double longest_shoot = 5;        ///< m; halved with every level
-  double longest_free = 0.35;      ///< m without hold, after which a tip stops
-  double pipe_exponent = 2;        ///< n: a stem's rⁿ is the sum of those it carries (pipe model)
-  double thickening = 0.12;        ///< 1/s, largest relative growth of a radius
-  double recalibration = 0.1;      ///< relative change of a branch's length or mass that lets it be calibrated at once
-  double settled = 5e-3;           ///< the same, of a branch whose turn it is: all take turns, within 2.5 s at 25 ms
-  Vec3 gravity = {0, -9.81, 0};    ///< m/s², that the plant grows under
-  size_t max_particles = 4000;     ///< stems and leaves; no bud breaks and no tip goes on beyond it
+  double elongation = 0.085;      ///< m/s of a fully lit tip
+  double shade = 0.5;             ///< what full shade leaves of that
+  double segment_length = 0.045;  ///< m, of a full-grown particle
+  double tip_radius = 1.2e-3;     ///< m, of the first shoots
+  unsigned first_shoots = 5;      ///< from one seed
+  double fan = 0.8;               ///< rad: their courses spread from -fan to +fan about upwards
+  double longest_shoot = 5;       ///< m; halved with every level
+  double longest_free = 0.35;     ///< m without hold, after which a tip stops
+  double pipe_exponent = 2;       ///< n: a stem's rⁿ is the sum of those it carries (pipe model)
+  double thickening = 0.12;       ///< 1/s, largest relative growth of a radius
+  double recalibration =
+      0.1;                ///< relative change of a branch's length or mass that lets it be calibrated at once
+  double settled = 5e-3;  ///< the same, of a branch whose turn it is: all take turns, within 2.5 s at 25 ms
+  Vec3 gravity = {0, -9.81, 0};  ///< m/s², that the plant grows under
+  size_t max_particles = 5000;   ///< stems and leaves; no bud breaks and no tip goes on beyond it
   TropismParameters tropisms;
   BranchingParameters branching;
   LeafParameters leaves;

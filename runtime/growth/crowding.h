@@ -21,7 +21,8 @@ class Crowding {
   bool crowded(const Vec3& x, double radius, BranchId own) const {
     const Key middle = key(x);
     for (int i = 0; i < 27; ++i) {
-      const auto found = cells_.find({middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1});
+      const auto found =
+          cells_.find({middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1});
       if (found == cells_.end()) continue;
       for (const Entry& entry : found->second)
         if (entry.branch != own && (entry.x - x).squaredNorm() < radius * radius) return true;

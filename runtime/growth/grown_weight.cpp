@@ -3,7 +3,8 @@
 namespace liana {
 
 void carry_grown_weight(Plant& plant, const Vec3& gravity, std::vector<Motion>& rest) {
-  // Rest poses, root to leaves; velocity and angular velocity hold the weight beyond a particle and its moment.
+  // Rest poses, root to leaves; velocity and angular velocity hold the weight beyond a particle and its
+  // moment.
   rest.assign(plant.particles.size(), Motion());
   for (size_t i = 0; i < rest.size(); ++i) {
     const Particle& particle = plant.particles[i];

@@ -5,9 +5,9 @@
 
 namespace liana {
 
-/// Sets every joint's rest load to the weight beyond it, in the plant's rest pose (all joints at their rest angles),
-/// whatever its present one: swaying, pushed or pulled plants come back to where they grew. Anchors carry nothing at
-/// rest. gravity in m/s². `rest` is working memory.
+/// Sets every joint's rest load to the weight beyond it, in the plant's rest pose (all joints at their rest
+/// angles), whatever its present one: swaying, pushed or pulled plants come back to where they grew. Anchors
+/// carry nothing at rest. gravity in m/s². `rest` is working memory.
 void carry_grown_weight(Plant& plant, const Vec3& gravity, std::vector<Motion>& rest);
 
 }  // namespace liana

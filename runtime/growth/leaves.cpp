@@ -10,7 +10,7 @@
 namespace liana {
 namespace {
 
-constexpr double kYoungest = 0.2;  // size of a leaf when it unfolds, of its full size
+constexpr double kYoungest = 0.2;    // size of a leaf when it unfolds, of its full size
 constexpr double kClearance = 2e-3;  // m that a growing blade keeps from solids
 
 /// Local +Y along the midrib, +Z (the upper side) as near to `face` as that allows.
@@ -25,8 +25,8 @@ Quat leaf_frame(const Vec3& midrib, const Vec3& face) {
 
 }  // namespace
 
-BranchId Leaves::sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3& outward, const Surroundings& around,
-                        const SpeciesLaw& law, Random& random) {
+BranchId Leaves::sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3& outward,
+                        const Surroundings& around, const SpeciesLaw& law, Random& random) {
   const LeafParameters& p = parameters_;
   const Vec3 forward = forward_of(plant, node);
   Vec3 side = outward.cross(forward);
@@ -54,9 +54,10 @@ BranchId Leaves::sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3&
   const ParticleId blade = append_segment(plant, leaf.branch, at, shape, leaf_frame(midrib, outward));
 
   const ElasticMaterial& material = law.default_material;
-  set_section(plant.particles[blade.index()].joint,
-              rod_section(material.youngs_modulus, material.poisson_ratio, p.petiole_radius, p.petiole_radius, 1),
-              p.petiole);
+  set_section(
+      plant.particles[blade.index()].joint,
+      rod_section(material.youngs_modulus, material.poisson_ratio, p.petiole_radius, p.petiole_radius, 1),
+      p.petiole);
   leaves_.push_back(leaf);
   resize(plant, leaf, kYoungest, law);
   return leaf.branch;
@@ -77,19 +78,6 @@ void Leaves::resize(Plant& plant, const Leaf& leaf, double size, const SpeciesLa
   set_mass(blade, DomainKind::Leaf, law.default_material.density * branch.material.mass_scaling);
 }
 
-// A blade that grows against a wall turns away from it, about its joint: tip and both edges are looked at.
-void Leaves::keep_out(Plant& plant, ParticleId id, const Surroundings& around) const {
-  const Particle& blade = plant.particles[id.index()];
-  for (const Vec3& point : {Vec3(0, blade.half_length, 0), Vec3(blade.half_width, 0, 0), Vec3(-blade.half_width, 0, 0)}) {
-    const Motion& motion = plant.motion[id.index()];
-    const Vec3 x = motion.position + motion.orientation * point;
-    const Vec3 way = way_out(x, kClearance, around);
-    if (way.isZero(0)) continue;
-    const Vec3 from = joint_point_of(plant, id);
-    turn_segment(plant, id, Quat::FromTwoVectors(x - from, x + way - from));
-  }
-}
-
 void Leaves::grow(Plant& plant, const Surroundings& around, double dt, const SpeciesLaw& law) {
   const double full = parameters_.seconds_to_full;
   for (size_t i = first_growing_; i < leaves_.size(); ++i) {
@@ -102,7 +90,11 @@ void Leaves::grow(Plant& plant, const Surroundings& around, double dt, const Spe
     const Vec3 bright = (around.to_sun + leaf.outward).stableNormalized();
     turn_segment(plant, blade, phototropism(face, bright, 0, parameters_.phototropism * dt));
     resize(plant, leaf, kYoungest + (1 - kYoungest) * t * t * (3 - 2 * t), law);
-    keep_out(plant, blade, around);
+    // A blade that grows against a wall turns away from it.
+    const Particle& shape = plant.particles[blade.index()];
+    for (const Vec3& point :
+         {Vec3(shape.half_width, 0, 0), Vec3(-shape.half_width, 0, 0), Vec3(0, shape.half_length, 0)})
+      keep_out(plant, blade, point, kClearance, around);
     if (t >= 1 && i == first_growing_) ++first_growing_;
   }
 }

@@ -11,9 +11,10 @@ class Leaves {
  public:
   explicit Leaves(const LeafParameters& parameters) : parameters_(parameters) {}
 
-  /// A young leaf at the head of a shoot's full-grown particle. `outward` (unit) points away from the support.
-  BranchId sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3& outward, const Surroundings& around,
-                  const SpeciesLaw& law, Random& random);
+  /// A young leaf at the head of a shoot's full-grown particle. `outward` (unit) points away from the
+  /// support.
+  BranchId sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3& outward,
+                  const Surroundings& around, const SpeciesLaw& law, Random& random);
 
   /// Enlarges and turns the leaves that are not full-grown.
   void grow(Plant& plant, const Surroundings& around, double dt, const SpeciesLaw& law);
@@ -27,7 +28,6 @@ class Leaves {
     Vec3 outward;                    // unit
     double age = 0;                  // growth s
   };
-  void keep_out(Plant& plant, ParticleId blade, const Surroundings& around) const;
   void resize(Plant& plant, const Leaf& leaf, double size, const SpeciesLaw& law) const;
 
   LeafParameters parameters_;

@@ -64,6 +64,16 @@ void turn_segment(Plant& plant, ParticleId particle, const Quat& world_rotation)
   motion.position = joint - motion.orientation * segment.joint.on_self;
 }
 
+void keep_out(Plant& plant, ParticleId particle, const Vec3& point, double radius,
+              const Surroundings& around) {
+  const Motion& motion = plant.motion[particle.index()];
+  const Vec3 x = motion.position + motion.orientation * point;
+  const Vec3 way = way_out(x, radius, around);
+  if (way.isZero(0)) return;
+  const Vec3 joint = joint_point_of(plant, particle);
+  turn_segment(plant, particle, Quat::FromTwoVectors(x - joint, x + way - joint));
+}
+
 void lengthen_segment(Plant& plant, ParticleId particle, double by) {
   Particle& segment = plant.particles[particle.index()];
   segment.half_length += by / 2;

@@ -1,8 +1,9 @@
-// Particles of a growing plant: their mass, inertia and physical joint stiffness, how one is appended, lengthened and
-// turned. Current and rest orientation always receive the same growth rotation ([Haedrich17] Eq. 8-10), so growth is
-// plastic and does not load a joint.
+// Particles of a growing plant: their mass, inertia and physical joint stiffness, how one is appended,
+// lengthened and turned. Current and rest orientation always receive the same growth rotation ([Haedrich17]
+// Eq. 8-10), so growth is plastic and does not load a joint.
 #pragma once
 
+#include "runtime/growth/surroundings.h"
 #include "runtime/sim/plant.h"
 
 namespace liana {
@@ -22,12 +23,16 @@ struct SegmentShape {
 ParticleId append_segment(Plant& plant, BranchId branch, const Attachment& at, const SegmentShape& shape,
                           const Quat& orientation);
 
-Vec3 forward_of(const Plant& plant, ParticleId particle);  ///< unit, world
-Vec3 head_of(const Plant& plant, ParticleId particle);     ///< m, world
+Vec3 forward_of(const Plant& plant, ParticleId particle);      ///< unit, world
+Vec3 head_of(const Plant& plant, ParticleId particle);         ///< m, world
 Vec3 joint_point_of(const Plant& plant, ParticleId particle);  ///< m, world, as a point of the particle
 
 /// Eq. 9-10: turns a particle about its joint, in its current and its rest state.
 void turn_segment(Plant& plant, ParticleId particle, const Quat& world_rotation);
+/// Turns a particle about its joint until a ball about one of its points (particle's frame) is outside of all
+/// solids.
+void keep_out(Plant& plant, ParticleId particle, const Vec3& point, double radius,
+              const Surroundings& around);
 /// Apical growth: the head moves forward by `by` metres, the tail stays.
 void lengthen_segment(Plant& plant, ParticleId particle, double by);
 

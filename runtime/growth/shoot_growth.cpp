@@ -13,9 +13,8 @@ Vec3 course_on_surface(const Vec3& normal, double course) {
   return Eigen::AngleAxisd(course, normal) * up.normalized();
 }
 
-Quat tip_turn(const Shoot& shoot, const Vec3& forward, double radius,
-              const std::optional<Support>& support, const Surroundings& around, const TropismParameters& parameters,
-              Random& random, double dt) {
+Quat tip_turn(const Shoot& shoot, const Vec3& forward, double radius, const std::optional<Support>& support,
+              const Surroundings& around, const TropismParameters& parameters, Random& random, double dt) {
   const double noise = parameters.wander * std::sqrt(dt) * random.normal();
   if (!support) {
     const Quat light = phototropism(forward, around.to_sun, 1 - shoot.light, parameters.phototropism * dt);
@@ -37,30 +36,29 @@ Quat tip_turn(const Shoot& shoot, const Vec3& forward, double radius,
   return Quat(Eigen::AngleAxisd(noise, normal)) * climb * adapt * light;  // Eq. 8 with two rotations more
 }
 
-bool grow_tip(Plant& plant, const Shoot& shoot, const ClimberParameters& parameters, const Surroundings& around,
-              Random& random, double dt) {
+bool grow_tip(Plant& plant, const Shoot& shoot, const ClimberParameters& parameters,
+              const Surroundings& around, Random& random, double dt) {
   Branch& branch = plant.branches[shoot.branch.index()];
   const ParticleId tip = branch.particles.back();
   Particle& particle = plant.particles[tip.index()];
 
   const Vec3 head = head_of(plant, tip);
   const auto support = closest_support(around.obstacles, head, parameters.tropisms.search_radius);
-  turn_segment(plant, tip, tip_turn(shoot, forward_of(plant, tip), particle.half_width, support, around,
-                                    parameters.tropisms, random, dt));
+  turn_segment(plant, tip,
+               tip_turn(shoot, forward_of(plant, tip), particle.half_width, support, around,
+                        parameters.tropisms, random, dt));
 
   const double lit = parameters.shade + (1 - parameters.shade) * shoot.light;
-  const double vigour = std::clamp(4 * (1 - branch.length / shoot.longest), 0.25, 1.0);  // the last quarter is slow
+  const double vigour =
+      std::clamp(4 * (1 - branch.length / shoot.longest), 0.25, 1.0);  // the last quarter is slow
   const double by = std::min(parameters.elongation * lit * vigour * dt,
                              parameters.segment_length - 2 * particle.half_length);
   lengthen_segment(plant, tip, by);
   branch.length += by;
 
-  const Vec3 way = way_out(head_of(plant, tip), particle.half_width, around);
-  if (!way.isZero(0)) {
-    const Vec3 from = joint_point_of(plant, tip);
-    const Vec3 free = head_of(plant, tip) + way - from;
-    turn_segment(plant, tip, Quat::FromTwoVectors(forward_of(plant, tip), free));
-  }
+  // Over an edge, the middle would cut the corner that the head has passed.
+  for (double part : {-0.5, 0.0, 0.5, 1.0})
+    keep_out(plant, tip, {0, part * particle.half_length, 0}, particle.half_width, around);
   return 2 * particle.half_length >= parameters.segment_length * (1 - 1e-9);
 }
 

@@ -14,28 +14,27 @@ namespace liana {
 /// What a shoot is besides its branch of particles.
 struct Shoot {
   BranchId branch;
-  double tip_radius;            ///< m
-  double course;                ///< rad on the surface, from upwards towards normal × up
-  double longest;               ///< m
-  double light = 1;             ///< 1 - O at its tip, smoothed over the last particles
-  double free_length = 0;       ///< m since its last hold
-  double since_leaf = 0;        ///< m
+  double tip_radius;       ///< m
+  double course;           ///< rad on the surface, from upwards towards normal × up
+  double longest;          ///< m
+  double light = 1;        ///< 1 - O at its tip, smoothed over the last particles
+  double free_length = 0;  ///< m since its last hold
+  double since_leaf = 0;   ///< m
   unsigned leaves = 0;
   bool growing = true;
 };
 
-/// Upwards along a surface of this outward normal, rotated by `course` about it: unit; zero where the surface is
-/// nearly level, for there is no up on it.
+/// Upwards along a surface of this outward normal, rotated by `course` about it: unit; zero where the surface
+/// is nearly level, for there is no up on it.
 Vec3 course_on_surface(const Vec3& normal, double course);
 
 /// R_g of [Haedrich17] Eq. 8 for a tip: surface adaption, phototropism, the shoot's course and random wander.
-Quat tip_turn(const Shoot& shoot, const Vec3& forward, double radius,
-              const std::optional<Support>& support, const Surroundings& around, const TropismParameters& parameters,
-              Random& random, double dt);
+Quat tip_turn(const Shoot& shoot, const Vec3& forward, double radius, const std::optional<Support>& support,
+              const Surroundings& around, const TropismParameters& parameters, Random& random, double dt);
 
 /// Turns and lengthens the shoot's last particle by dt of growth and keeps its head out of solids and ground.
 /// True when the particle is full-grown.
-bool grow_tip(Plant& plant, const Shoot& shoot, const ClimberParameters& parameters, const Surroundings& around,
-              Random& random, double dt);
+bool grow_tip(Plant& plant, const Shoot& shoot, const ClimberParameters& parameters,
+              const Surroundings& around, Random& random, double dt);
 
 }  // namespace liana

@@ -5,7 +5,8 @@
 
 namespace liana {
 
-std::optional<Support> closest_support(std::span<const SdfObstacle* const> obstacles, const Vec3& x, double radius) {
+std::optional<Support> closest_support(std::span<const SdfObstacle* const> obstacles, const Vec3& x,
+                                       double radius) {
   std::optional<Support> best;
   for (const SdfObstacle* obstacle : obstacles) {
     const double limit = best ? best->distance : radius;

@@ -1,4 +1,5 @@
-// What a growing part feels of the world: the closest support over all obstacles, the way out of solids, the sun.
+// What a growing part feels of the world: the closest support over all obstacles, the way out of solids, the
+// sun.
 #pragma once
 
 #include <optional>
@@ -15,7 +16,8 @@ struct Support {
 };
 
 /// Exact. Nothing when no surface is within `radius` (m).
-std::optional<Support> closest_support(std::span<const SdfObstacle* const> obstacles, const Vec3& x, double radius);
+std::optional<Support> closest_support(std::span<const SdfObstacle* const> obstacles, const Vec3& x,
+                                       double radius);
 
 struct Surroundings {
   std::span<const SdfObstacle* const> obstacles;
@@ -23,7 +25,8 @@ struct Surroundings {
   double ground_height;  ///< m
 };
 
-/// How a ball (m) must move to be outside every solid and the ground, as far as the deepest one asks; zero if it is.
+/// How a ball (m) must move to be outside every solid and the ground, as far as the deepest one asks; zero if
+/// it is.
 Vec3 way_out(const Vec3& centre, double radius, const Surroundings& around);
 
 }  // namespace liana

@@ -36,7 +36,8 @@ void thicken(Plant& plant, const std::vector<double>& young_radius, const std::v
     const Branch& branch = plant.branches[particle.branch.index()];
     particle.half_width = particle.half_thickness = radius;
     set_mass(particle, DomainKind::Branch, material.density * branch.material.mass_scaling);
-    const RodSection section = rod_section(material.youngs_modulus, material.poisson_ratio, radius, radius, 1);
+    const RodSection section =
+        rod_section(material.youngs_modulus, material.poisson_ratio, radius, radius, 1);
     const double scale = branch.stiffness_scale / joint_length[i];
     set_stiffness(plant, ParticleId(i), scale * section.shear, scale * section.bend);
   }

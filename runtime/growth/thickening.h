@@ -13,8 +13,8 @@ struct ThickeningParameters {
   double largest_rate;  ///< 1/s, of the radius
 };
 
-/// The radius (m) every stem particle wants: young_radius[i] (m, 0 for leaves) at a tip, the sum of its children's
-/// rⁿ below. Leaf particles get 0.
+/// The radius (m) every stem particle wants: young_radius[i] (m, 0 for leaves) at a tip, the sum of its
+/// children's rⁿ below. Leaf particles get 0.
 std::vector<double> pipe_radii(const Plant& plant, const std::vector<double>& young_radius, double exponent,
                                double leaf_radius);
 

@@ -13,7 +13,9 @@ Quat turn(const Vec3& axis, double angle) {
   return Quat(Eigen::AngleAxisd(angle, axis / length));
 }
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+double angle_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
 
 }  // namespace
 

@@ -34,7 +34,8 @@ SpeciesLaw ivy_like_law() {
 }
 
 ClimberScene::ClimberScene(const ClimberParameters& parameters, uint64_t seed)
-    : wall(box_mesh({-2.5, -0.1, -0.2}, {2.5, 3, 0})), climber(parameters, ivy_like_law(), {0, 0, 0.12}, seed) {}
+    : wall(box_mesh({-2.5, -0.1, -0.2}, {2.5, 3, 0})),
+      climber(parameters, ivy_like_law(), {0, 0, 0.12}, seed) {}
 
 void ClimberScene::step(const WindField* wind) {
   const double dt = plant.scheme.dt;
@@ -43,17 +44,15 @@ void ClimberScene::step(const WindField* wind) {
   timed(seconds.wind, [&] {
     if (wind) add_wind(plant, *wind, time, {}, springs_);
   });
-  timed(seconds.collision, [&] {
-    const ContactReport report = contacts.gather(plant, collision(), springs_);
-    max_penetration = std::max(max_penetration, report.max_penetration);
-    contact_springs += report.contacts;
-  });
   timed(seconds.physics, [&] {
     StepOptions options;
     options.dt = dt;
-    const StepReport report = stepper.step(plant, {}, springs_, options);
-    sound = sound && report.finite && report.gap_held;
-    redone += report.redone;
+    const ContactStepReport report = stepper.step(plant, collision(), {}, springs_, options);
+    max_penetration = std::max(max_penetration, report.contacts.max_penetration);
+    contact_springs += report.contacts.contacts;
+    sound = sound && report.step.finite && report.step.gap_held;
+    redone += report.step.redone;
+    passes += report.passes;
   });
   out_of_range += growth.out_of_range;
   recalibrated += growth.recalibrated;

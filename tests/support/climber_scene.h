@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "runtime/growth/climber.h"
-#include "runtime/sim/collision/contacts.h"
-#include "runtime/sim/time_step.h"
+#include "runtime/sim/collision/contact_step.h"
 #include "runtime/wind/wind_field.h"
 
 namespace liana {
@@ -14,7 +13,8 @@ namespace liana {
 /// Frequencies and damping of the order of ivy's; 0.7 Hz at 1 m.
 SpeciesLaw ivy_like_law();
 
-/// A 5 m wide, 3 m high wall of 0.2 m with its face at z = 0, and a seed on the ground 0.12 m before its middle.
+/// A 5 m wide, 3 m high wall of 0.2 m with its face at z = 0, and a seed on the ground 0.12 m before its
+/// middle.
 class ClimberScene {
  public:
   explicit ClimberScene(const ClimberParameters& parameters = {}, uint64_t seed = 1);
@@ -26,20 +26,20 @@ class ClimberScene {
   CollisionScene collision() const { return {obstacles(), 0.0}; }
 
   struct Seconds {
-    double growth = 0, collision = 0, wind = 0, physics = 0;  ///< wall clock
+    double growth = 0, wind = 0, physics = 0;  ///< wall clock
   };
 
   SdfObstacle wall;
   Plant plant;
   Climber climber;
-  Contacts contacts;
-  PlantStepper stepper;
-  double growth_speed = 1;   ///< growth seconds per second
-  double time = 0;           ///< s
-  GrowthReport growth;       ///< of the last step
-  size_t out_of_range = 0, recalibrated = 0, redone = 0, contact_springs = 0;  ///< sums over all steps
-  double max_penetration = 0, max_speed = 0;                      ///< over all steps, m and m/s
-  bool sound = true;                                              ///< every step finite, every gap held
+  ContactStepper stepper;
+  double growth_speed = 1;  ///< growth seconds per second
+  double time = 0;          ///< s
+  GrowthReport growth;      ///< of the last step
+  size_t out_of_range = 0, recalibrated = 0, redone = 0, contact_springs = 0,
+         passes = 0;                          ///< sums over all steps
+  double max_penetration = 0, max_speed = 0;  ///< over all steps, m and m/s
+  bool sound = true;                          ///< every step finite, every gap held
   Seconds seconds;
 
  private:

@@ -41,7 +41,16 @@ struct Probe {
 constexpr Probe kStemProbes[] = {{0, 1}, {1, 1}};
 constexpr Probe kBladeProbes[] = {{0, 1}, {1, 0}};
 
-/// Calls visit(particle index, point in the particle's frame, gap, normal) for every probe within its reach.
+/// What a probe of a particle finds at one solid: where it touches first, and how far that is.
+struct Gap {
+  size_t particle;
+  uint64_t key;  // ascending in the order of visits
+  Vec3 point;    // m, particle's frame
+  double gap;    // m, negative inside
+  Vec3 normal;   // unit, away from the solid
+};
+
+/// Calls visit(Gap) for every probe of particles from `first` on that can get into something within dt.
 template <class Visit>
 void for_each_gap(const Plant& plant, const CollisionScene& scene, double dt, size_t first,
                   const Visit& visit) {
@@ -54,30 +63,37 @@ void for_each_gap(const Plant& plant, const CollisionScene& scene, double dt, si
         dt * (motion.velocity.norm() + particle.half_length * motion.angular_velocity.norm() +
               dt * motion.acceleration.norm() / 2);
     const double reach = std::max(particle.half_width, particle.half_thickness) + travel;
-    for (const Probe& probe : blade ? kBladeProbes : kStemProbes) {
+    for (uint64_t p = 0; p < 2; ++p) {
+      const Probe& probe = (blade ? kBladeProbes : kStemProbes)[p];
       const Vec3 on_axis = Vec3(0, probe.along * particle.half_length, 0);
       const Vec3 x = motion.position + to_world * on_axis;
-      const auto report = [&](const Nearest& found) {
-        if (found.distance > reach) return;
-        const Vec3 arm = reach_towards(particle, to_world.transpose() * found.normal, probe.width);
-        visit(i, Vec3(on_axis + arm), found.distance + (to_world * arm).dot(found.normal), found.normal);
+      const auto look = [&](uint64_t solid, const auto& nearest_to) {
+        const Nearest on_axis_found = nearest_to(x);
+        if (on_axis_found.distance > reach) return;
+        const Vec3 arm = reach_towards(particle, to_world.transpose() * on_axis_found.normal, probe.width);
+        // Beside an edge the solid is no half space: what counts is the distance of the point itself.
+        const Nearest found = nearest_to(x + to_world * arm);
+        if (found.distance <= reach)
+          visit(Gap{i, (uint64_t(i) * 2 + p) << 16 | solid, on_axis + arm, found.distance, found.normal});
       };
-      for (const SdfObstacle* solid : scene.solids) report(nearest(*solid, x, reach));
-      if (scene.ground_height) report({x.y() - *scene.ground_height, Vec3::UnitY()});
+      for (size_t s = 0; s < scene.solids.size(); ++s)
+        look(s + 1, [&](const Vec3& at) { return nearest(*scene.solids[s], at, reach); });
+      if (scene.ground_height)
+        look(0, [&](const Vec3& at) { return Nearest{at.y() - *scene.ground_height, Vec3::UnitY()}; });
     }
   }
 }
 
 }  // namespace
 
-// A plant's base stands in the ground or in a wall: what is inside when it is made, and connected to the root
-// through particles that were inside too, is left alone.
+// A plant's base stands in the ground or in a wall and thickens there: its roots, and what is inside when it
+// is made and connected to them through particles that were inside too, are left alone.
 void Contacts::notice_new_particles(const Plant& plant, const CollisionScene& scene) {
   const size_t known = exempt_.size();
   if (known == plant.particles.size()) return;
   std::vector<uint8_t> inside(plant.particles.size() - known, 0);
-  for_each_gap(plant, scene, 0, known, [&](size_t i, const Vec3&, double gap, const Vec3&) {
-    if (gap < -1e-3) inside[i - known] = 1;
+  for_each_gap(plant, scene, 0, known, [&](const Gap& found) {
+    if (found.gap < -1e-3) inside[found.particle - known] = 1;
   });
   for (size_t i = known; i < plant.particles.size(); ++i) {
     const ParticleId parent = plant.particles[i].parent;
@@ -89,49 +105,77 @@ void Contacts::notice_new_particles(const Plant& plant, const CollisionScene& sc
 // (x₁ - t) + Δt v₁ = 0: the point comes to the surface and stays there. The time step takes spring forces at
 // n+1-α_f, so target and its velocity are mixed with the present ones by α_f, which leaves (1-α_f) times that
 // force.
+WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, size_t particle, const Vec3& point,
+                             double gap, const Vec3& n) const {
+  const double dt = plant.scheme.dt, alpha_f = GeneralizedAlpha(plant.scheme.rho_infinity).alpha_f;
+  const Vec3 arm = motion.orientation * point;
+  const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(arm);
+  const double approach = velocity.dot(n);
+  const double k = std::max(options_.stiffness_ratio * plant.particles[particle].mass / (dt * dt),
+                            options_.least_stiffness);
+  const double pressing = (1 - alpha_f) * k * std::max(0.0, -gap);  // N
+  const Vec3 sliding = velocity - approach * n;
+  const double friction = options_.friction * pressing / std::max(sliding.norm(), options_.creep_speed);
+  const Mat3 normal = n * n.transpose();
+  const double way = std::min(-gap, options_.push_out_speed * dt);  // to the surface, along n
+
+  WorldSpring spring;
+  spring.particle = ParticleId(particle);
+  spring.on_particle = point;
+  spring.target = motion.position + arm + (1 - alpha_f) * way * n;
+  spring.target_velocity = alpha_f * approach * n;
+  spring.stiffness = k * normal;
+  spring.damping = k * dt * normal + friction * (Mat3::Identity() - normal);
+  return spring;
+}
+
 ContactReport Contacts::gather(const Plant& plant, const CollisionScene& scene,
                                std::vector<WorldSpring>& springs) {
   notice_new_particles(plant, scene);
-  const double dt = plant.scheme.dt, alpha_f = GeneralizedAlpha(plant.scheme.rho_infinity).alpha_f;
+  made_.clear();
+  const double dt = plant.scheme.dt;
   ContactReport report;
   report.exempt = std::count(exempt_.begin(), exempt_.end(), 1);
-  for_each_gap(plant, scene, dt, 0, [&](size_t i, const Vec3& point, double gap, const Vec3& n) {
-    if (exempt_[i]) return;
-    report.max_penetration = std::max(report.max_penetration, -gap);
-    const Motion& motion = plant.motion[i];
-    const Vec3 arm = motion.orientation * point;
-    const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(arm);
-    const double approach = velocity.dot(n);
-    const double coming = dt * approach + dt * dt / 2 * motion.acceleration.dot(n);
-    if (gap + std::min(0.0, coming) >= 0) return;
-
-    const double k =
-        std::max(options_.stiffness_ratio * plant.particles[i].mass / (dt * dt), options_.least_stiffness);
-    const double pressing = (1 - alpha_f) * k * std::max(0.0, -gap);  // N
-    const Vec3 sliding = velocity - approach * n;
-    const double friction = options_.friction * pressing / std::max(sliding.norm(), options_.creep_speed);
-    const Mat3 normal = n * n.transpose();
-    const double way = std::min(-gap, options_.push_out_speed * dt);  // to the surface, along n
-
-    WorldSpring spring;
-    spring.particle = ParticleId(i);
-    spring.on_particle = point;
-    spring.target = motion.position + arm + (1 - alpha_f) * way * n;
-    spring.target_velocity = alpha_f * approach * n;
-    spring.stiffness = k * normal;
-    spring.damping = k * dt * normal + friction * (Mat3::Identity() - normal);
-    springs.push_back(spring);
+  for_each_gap(plant, scene, dt, 0, [&](const Gap& found) {
+    if (exempt_[found.particle]) return;
+    report.max_penetration = std::max(report.max_penetration, -found.gap);
+    const Motion& motion = plant.motion[found.particle];
+    const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(motion.orientation * found.point);
+    const double coming =
+        dt * velocity.dot(found.normal) + dt * dt / 2 * motion.acceleration.dot(found.normal);
+    if (found.gap + std::min(0.0, coming) >= 0) return;
+    springs.push_back(spring(plant, motion, found.particle, found.point, found.gap, found.normal));
+    made_.push_back(found.key);
     ++report.contacts;
   });
   return report;
+}
+
+size_t Contacts::gather_missed(const Plant& after, std::span<const Motion> before,
+                               const CollisionScene& scene, double tolerance,
+                               std::vector<WorldSpring>& springs) {
+  const size_t known = made_.size();
+  for_each_gap(after, scene, 0, 0, [&](const Gap& found) {
+    if (exempt_[found.particle] || found.gap > -tolerance) return;
+    if (std::binary_search(made_.begin(), made_.begin() + known, found.key)) return;
+    // The plane it is behind now, seen from where it started.
+    const Motion &now = after.motion[found.particle], &start = before[found.particle];
+    const Vec3 came =
+        now.position + now.orientation * found.point - start.position - start.orientation * found.point;
+    const double gap = found.gap - came.dot(found.normal);
+    springs.push_back(spring(after, start, found.particle, found.point, gap, found.normal));
+    made_.push_back(found.key);
+  });
+  std::inplace_merge(made_.begin(), made_.begin() + known, made_.end());
+  return made_.size() - known;
 }
 
 ContactReport Contacts::measure(const Plant& plant, const CollisionScene& scene) {
   notice_new_particles(plant, scene);
   ContactReport report;
   report.exempt = std::count(exempt_.begin(), exempt_.end(), 1);
-  for_each_gap(plant, scene, 0, 0, [&](size_t i, const Vec3&, double gap, const Vec3&) {
-    if (!exempt_[i]) report.max_penetration = std::max(report.max_penetration, -gap);
+  for_each_gap(plant, scene, 0, 0, [&](const Gap& found) {
+    if (!exempt_[found.particle]) report.max_penetration = std::max(report.max_penetration, -found.gap);
   });
   return report;
 }

@@ -33,22 +33,33 @@ struct ContactReport {
   double max_penetration = 0;  ///< m, of the state looked at, without exempt particles
 };
 
-/// One per plant: it remembers which particles were made inside something.
+/// One per plant: it remembers which particles were made inside something, and the contacts of the present
+/// step.
 class Contacts {
  public:
   explicit Contacts(const ContactOptions& options = {}) : options_(options) {}
 
-  /// Appends the contact springs for the next step of the plant's time scheme, from its present state.
+  /// Appends the contact springs for the next step of the plant's time scheme, from its present state: of
+  /// what is inside, or will be if it goes on as it does.
   ContactReport gather(const Plant& plant, const CollisionScene& scene, std::vector<WorldSpring>& springs);
+
+  /// After that step: appends springs for what is inside by more than `tolerance` (m) all the same and had
+  /// none, for taking the step again from `before`. Returns how many.
+  size_t gather_missed(const Plant& after, std::span<const Motion> before, const CollisionScene& scene,
+                       double tolerance, std::vector<WorldSpring>& springs);
 
   /// Only looks: the report of the present state, with no springs.
   ContactReport measure(const Plant& plant, const CollisionScene& scene);
 
  private:
+  using Key = uint64_t;  // particle, probe, solid
   void notice_new_particles(const Plant& plant, const CollisionScene& scene);
+  WorldSpring spring(const Plant& plant, const Motion& motion, size_t particle, const Vec3& point, double gap,
+                     const Vec3& normal) const;
 
   ContactOptions options_;
   std::vector<uint8_t> exempt_;  // per particle
+  std::vector<Key> made_;        // sorted: the contacts that have a spring in this step
 };
 
 }  // namespace liana

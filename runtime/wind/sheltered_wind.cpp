@@ -1,0 +1,38 @@
+#include "runtime/wind/sheltered_wind.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace liana {
+
+ShelteredWind::ShelteredWind(const WindField& open, std::vector<const SdfObstacle*> solids,
+                             std::optional<double> ground_height, const ShelterParameters& parameters)
+    : open_(open), solids_(std::move(solids)), ground_height_(ground_height), parameters_(parameters) {}
+
+void ShelteredWind::slow(Vec3& wind, double distance, const Vec3& normal) const {
+  const double layer = parameters_.layer, roughness = parameters_.roughness;
+  if (distance >= layer) return;
+  const double inside = std::max(distance, 0.0);
+  const double into = wind.dot(normal);
+  if (into < 0) wind -= (1 - inside / layer) * into * normal;
+  wind *= std::log1p(inside / roughness) / std::log1p(layer / roughness);
+}
+
+Vec3 ShelteredWind::velocity(const Vec3& position, double time) const {
+  Vec3 wind = open_.velocity(position, time);
+  for (const SdfObstacle* solid : solids_) {
+    const SdfSample field = solid->sample(position);
+    if (field.distance >= parameters_.layer) continue;
+    // Beyond the accurate band the distance is a lower bound: ask exactly there.
+    if (std::abs(field.distance) < solid->band()) {
+      slow(wind, field.distance, field.gradient);
+    } else {
+      const SurfacePoint closest = solid->closest_point(position);
+      slow(wind, closest.distance, (position - closest.point) / closest.distance);
+    }
+  }
+  if (ground_height_) slow(wind, position.y() - *ground_height_, Vec3::UnitY());
+  return wind;
+}
+
+}  // namespace liana
