@@ -68,6 +68,7 @@ std::string report_json(const World& world, double total_seconds, double render_
   json["max_penetration_m"] = report.max_penetration;
   json["anchors"] = report.anchors;
   json["redone_steps"] = report.redone_steps;
+  json["contact_passes"] = report.contact_passes;
   json["lost_steps"] = report.lost_steps;
   json["seconds"] = {{"total", total_seconds},
                      {"physics", report.seconds.physics},

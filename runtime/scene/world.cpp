@@ -88,18 +88,17 @@ void World::step_inhabitant(size_t index) {
   report.seconds.growth += timed([&] {
     if (self.climber) self.climber->grow(self.plant, solids_, scene_.to_sun, self.growth_speed * scene_.time_step);
   });
-  report.seconds.collision += timed([&] {
-    const ContactReport contacts = self.contacts.gather(self.plant, {solids_, 0.0}, self.springs);
-    report.max_penetration = std::max(report.max_penetration, contacts.max_penetration);
-  });
-  report.seconds.physics += timed([&] {
-    if (scene_.wind.velocity.norm() > 0) add_wind(self.plant, wind_, time(), {}, self.springs);
-    if (grabbed_ && grabbed_->plant == index) self.springs.push_back(grabbed_->spring);
-    const StepReport step =
-        self.stepper.step(self.plant, {}, self.springs, {.dt = scene_.time_step, .gravity = scene_.gravity});
-    report.redone_steps += step.redone > 0;
-    report.lost_steps += !step.finite;
-  });
+  const Stopwatch watch;
+  if (scene_.wind.velocity.norm() > 0) add_wind(self.plant, wind_, time(), {}, self.springs);
+  if (grabbed_ && grabbed_->plant == index) self.springs.push_back(grabbed_->spring);
+  const ContactStepReport done = self.stepper.step(self.plant, {solids_, 0.0}, {}, self.springs,
+                                                   {.dt = scene_.time_step, .gravity = scene_.gravity});
+  report.max_penetration = std::max(report.max_penetration, done.contacts.max_penetration);
+  report.contact_passes += static_cast<size_t>(done.passes - 1);
+  report.redone_steps += done.step.redone > 0;
+  report.lost_steps += !done.step.finite;
+  report.seconds.collision += done.collision_seconds;
+  report.seconds.physics += watch.seconds() - done.collision_seconds;
 }
 
 void World::draw(DrawScene& scene) const { add_to(scene, false); }
@@ -144,6 +143,7 @@ WorldReport World::report() const {
     total.anchors += inhabitant->plant.anchors.size();
     total.max_penetration = std::max(total.max_penetration, own.max_penetration);
     total.redone_steps += own.redone_steps;
+    total.contact_passes += own.contact_passes;
     total.lost_steps += own.lost_steps;
     total.seconds.growth += own.seconds.growth;
     total.seconds.collision += own.seconds.collision;

@@ -7,8 +7,7 @@
 
 #include "runtime/growth/climber.h"
 #include "runtime/scene/scene_file.h"
-#include "runtime/sim/collision/contacts.h"
-#include "runtime/sim/time_step.h"
+#include "runtime/sim/collision/contact_step.h"
 #include "runtime/view/camera.h"
 #include "runtime/view/plant_drawing.h"
 #include "runtime/view/simulation_view.h"
@@ -56,12 +55,11 @@ class World final : public Simulation {
  private:
   struct Inhabitant {
     Plant plant;
-    PlantStepper stepper;
-    Contacts contacts;
+    ContactStepper stepper;
     std::optional<Climber> climber;
     double growth_speed = 1;
     PlantLook look;
-    std::vector<WorldSpring> springs;  // contacts, wind and grab of the step
+    std::vector<WorldSpring> springs;  // wind, grab and contacts of the step
     WorldReport report;
   };
   struct Grab {
