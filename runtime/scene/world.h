@@ -25,6 +25,7 @@ struct WorldReport {
   size_t steps = 0, particles = 0, anchors = 0;
   double max_penetration = 0;  ///< m, deepest that any particle ever was in an obstacle or the ground
   size_t redone_steps = 0;     ///< steps that the solver took again with finer substeps
+  size_t contact_passes = 0;     ///< taken again because a contact showed only at the step's end
   size_t lost_steps = 0;       ///< steps that did not stay finite and were stopped
   PhaseSeconds seconds;
 };
