@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 struct SimulateArguments {
   fs::path scene, png, mp4, glb, report;
   std::optional<double> seconds;
-  double video_seconds = 10, sway_seconds = 4;
+  double video_seconds = 8, sway_seconds = 4;
   std::vector<int> size = {1280, 720}, video_size = {854, 480};
   unsigned threads = 0;
 };
@@ -107,7 +107,6 @@ int simulate(const SimulateArguments& arguments) {
   FrameOptions video_frame;
   video_frame.width = arguments.video_size[0] / 2 * 2;
   video_frame.height = arguments.video_size[1] / 2 * 2;
-  video_frame.samples = 4;
   if (!arguments.mp4.empty()) video.emplace(arguments.mp4, video_frame.width, video_frame.height, kFrameRate);
   Film film(arguments, steps, scene.time_step);
   const Camera camera = world.camera();

@@ -16,6 +16,28 @@
 namespace liana {
 namespace {
 
+constexpr double kGroundHeight = 0;  // m: the ground is level, as the renderer draws it
+
+std::vector<std::unique_ptr<SdfObstacle>> obstacles_of(const Scene& scene) {
+  std::vector<std::unique_ptr<SdfObstacle>> obstacles;
+  for (const SceneObstacle& obstacle : scene.obstacles) {
+    try {
+      obstacles.push_back(std::make_unique<SdfObstacle>(obstacle.mesh));
+    } catch (const Error& error) {
+      throw Error(error.kind,
+                  fmt::format("{}: obstacle '{}': {}", scene.file.string(), obstacle.name, error.what()),
+                  error.hint);
+    }
+  }
+  return obstacles;
+}
+
+std::vector<const SdfObstacle*> pointers_to(const std::vector<std::unique_ptr<SdfObstacle>>& obstacles) {
+  std::vector<const SdfObstacle*> pointers;
+  for (const auto& obstacle : obstacles) pointers.push_back(obstacle.get());
+  return pointers;
+}
+
 GustParameters gusts(const Scene& scene) {
   GustParameters gusts;
   gusts.mean = scene.wind.velocity;
@@ -27,18 +49,15 @@ GustParameters gusts(const Scene& scene) {
 
 }  // namespace
 
-World::World(const Scene& scene, unsigned threads) : scene_(scene), threads_(threads), wind_(gusts(scene)) {
-  for (const SceneObstacle& obstacle : scene.obstacles) {
-    try {
-      obstacles_.push_back(std::make_unique<SdfObstacle>(obstacle.mesh));
-    } catch (const Error& error) {
-      throw Error(error.kind,
-                  fmt::format("{}: obstacle '{}': {}", scene.file.string(), obstacle.name, error.what()), error.hint);
-    }
-    solids_.push_back(obstacles_.back().get());
-  }
+World::World(const Scene& scene, unsigned threads)
+    : scene_(scene),
+      threads_(threads),
+      obstacles_(obstacles_of(scene)),
+      solids_(pointers_to(obstacles_)),
+      open_wind_(gusts(scene)),
+      wind_(open_wind_, solids_, kGroundHeight) {
   for (const ScenePlant& entry : scene.plants) add_baked(entry);
-  for (const SceneClimber& entry : scene.climbers) add_climber(entry, scene.seed + inhabitants_.size());
+  for (size_t i = 0; i < scene.climbers.size(); ++i) add_climber(scene.climbers[i], scene.seed + i);
 }
 
 void World::add_baked(const ScenePlant& entry) {
@@ -91,7 +110,7 @@ void World::step_inhabitant(size_t index) {
   const Stopwatch watch;
   if (scene_.wind.velocity.norm() > 0) add_wind(self.plant, wind_, time(), {}, self.springs);
   if (grabbed_ && grabbed_->plant == index) self.springs.push_back(grabbed_->spring);
-  const ContactStepReport done = self.stepper.step(self.plant, {solids_, 0.0}, {}, self.springs,
+  const ContactStepReport done = self.stepper.step(self.plant, {solids_, kGroundHeight}, {}, self.springs,
                                                    {.dt = scene_.time_step, .gravity = scene_.gravity});
   report.max_penetration = std::max(report.max_penetration, done.contacts.max_penetration);
   report.contact_passes += static_cast<size_t>(done.passes - 1);

@@ -11,6 +11,7 @@
 #include "runtime/view/camera.h"
 #include "runtime/view/plant_drawing.h"
 #include "runtime/view/simulation_view.h"
+#include "runtime/wind/sheltered_wind.h"
 #include "runtime/wind/steady_gust_wind.h"
 
 namespace liana {
@@ -78,7 +79,8 @@ class World final : public Simulation {
   unsigned threads_;
   std::vector<std::unique_ptr<SdfObstacle>> obstacles_;
   std::vector<const SdfObstacle*> solids_;
-  SteadyGustWind wind_;
+  SteadyGustWind open_wind_;
+  ShelteredWind wind_;  // the same, calmed by obstacles and the ground
   std::vector<std::unique_ptr<Inhabitant>> inhabitants_;
   std::optional<Grab> grabbed_;
   size_t steps_ = 0;

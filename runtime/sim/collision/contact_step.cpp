@@ -1,18 +1,22 @@
 #include "runtime/sim/collision/contact_step.h"
 
+#include "mesher/base/stopwatch.h"
+
 namespace liana {
 
 ContactStepReport ContactStepper::step(Plant& plant, const CollisionScene& scene,
                                        std::span<const Wrench> external, std::vector<WorldSpring>& springs,
                                        const StepOptions& options) {
   ContactStepReport report;
-  report.contacts = contacts_.gather(plant, scene, springs);
+  report.collision_seconds += timed([&] { report.contacts = contacts_.gather(plant, scene, springs); });
   before_.assign(plant.motion.begin(), plant.motion.end());
   for (;;) {
     report.step = stepper_.step(plant, external, springs, options);
     report.solves += report.step.solves;
     if (++report.passes >= options_.most_passes) break;
-    const size_t missed = contacts_.gather_missed(plant, before_, scene, options_.tolerance, springs);
+    size_t missed = 0;
+    report.collision_seconds +=
+        timed([&] { missed = contacts_.gather_missed(plant, before_, scene, options_.tolerance, springs); });
     if (missed == 0) break;
     report.contacts.contacts += missed;
     plant.motion.assign(before_.begin(), before_.end());

@@ -16,6 +16,7 @@ struct ContactStepReport {
   ContactReport contacts;  ///< penetration is that of the state before the step
   int passes = 0;          ///< how often the step was taken
   int solves = 0;          ///< of all passes
+  double collision_seconds = 0;  ///< wall clock, spent looking for contacts
 };
 
 /// PlantStepper::step() with contacts. springs: wind, grabs; the contacts are appended. Keep one per plant.
