@@ -32,7 +32,7 @@ PLANTS = {
         leaf=dict(lengths=(0.06, 0.07, 0.08), width=0.62, bend=0.5, fold=0.35, thickness=3e-4, base=0.22)),
     "apple_tree": dict(
         sapling=dict(APPLE, seed=5, levels=3, scale=2.9, ratio=0.016, length=(1, 0.55, 0.42, 0.3), minRadius=0.0018,
-                     branches=(0, 22, 9, 0), curveRes=(10, 6, 4, 1), leaves=14),
+                     branches=(0, 22, 9, 0), curveRes=(10, 6, 4, 1), leaves=36),
         leaf=dict(lengths=(0.06, 0.07, 0.08), width=0.62, bend=0.5, fold=0.35, thickness=3e-4, base=0.22)),
     "ivy_sprig": dict(
         sapling=dict(APPLE, seed=3, levels=2, scale=0.6, ratio=0.008, length=(1, 0.6, 0.3, 0.3), minRadius=0.0015,

@@ -87,11 +87,7 @@ System assemble(const NodeMesh& mesh, Element element, const ElasticMaterial& ma
   const int pairs = pair_count(mesh.nodes_per_element);
   std::array<Mat3, pair_count(10)> blocks;
   for (size_t e = 0; e < mesh.element_count(); ++e) {
-    const auto nodes = mesh.element(e);
-    const Vec3& origin = mesh.positions[nodes[0]];
-    std::array<Vec3, 4> corners;
-    for (int k = 0; k < 4; ++k) corners[k] = (mesh.positions[nodes[k]] - origin) / system.length;
-    const TetGeometry tet = tet_geometry(corners);
+    const TetGeometry tet = element_geometry(mesh, e, system.length);
     element_stiffness(element, tet, lame, blocks);
     for (int pair = 0; pair < pairs; ++pair) {
       const uint32_t slot = slots[e * pairs + pair], entry = slot >> 1;

@@ -87,6 +87,13 @@ TetGeometry tet_geometry(const std::array<Vec3, 4>& corners) {
   return tet;
 }
 
+TetGeometry element_geometry(const NodeMesh& mesh, size_t element, double length) {
+  const auto nodes = mesh.element(element);
+  std::array<Vec3, 4> corners;
+  for (int k = 0; k < 4; ++k) corners[k] = (mesh.positions[nodes[k]] - mesh.positions[nodes[0]]) / length;
+  return tet_geometry(corners);
+}
+
 void element_stiffness(Element element, const TetGeometry& tet, const LameConstants& lame,
                        std::span<Mat3> blocks) {
   // Q_kl = V (λ g_k g_lᵀ + μ g_l g_kᵀ + μ (g_k·g_l) I); the map from outer products to blocks is linear.
@@ -96,7 +103,7 @@ void element_stiffness(Element element, const TetGeometry& tet, const LameConsta
       const Mat3 P = tet.volume * tet.gradients[k] * tet.gradients[l].transpose();
       Q[k][l] = lame.lambda * P + lame.mu * P.transpose();
       Q[k][l].diagonal().array() += lame.mu * P.trace();
-      Q[l][k] = Q[k][l].transpose();
+      if (k != l) Q[l][k] = Q[k][l].transpose();
     }
   }
   if (element == Element::T4) {

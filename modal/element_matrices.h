@@ -39,6 +39,9 @@ struct TetGeometry {
 };
 TetGeometry tet_geometry(const std::array<Vec3, 4>& corners);
 
+/// Of an element in units of `length` (m), its first corner as origin.
+TetGeometry element_geometry(const NodeMesh& mesh, size_t element, double length);
+
 /// K_ab for a >= b, packed by pair_index; 55 blocks for T10, 10 for T4.
 void element_stiffness(Element element, const TetGeometry& tet, const LameConstants& lame,
                        std::span<Mat3> blocks);

@@ -6,10 +6,14 @@
 
 #include "mesher/base/error.h"
 #include "modal/assembly.h"
+#include "modal/strain_energy.h"
 #include "modal/subspace_iteration.h"
 
 namespace liana {
 namespace {
+
+/// Where the frequency's error, its square, reaches 1 %.
+constexpr double kLargestRounding = 0.1;
 
 /// Every tet must reach the root through shared vertices: a loose part would make K singular, but only just,
 /// and rounding could hide it.
@@ -61,13 +65,16 @@ Modes lowest_modes(const TetMesh& mesh, const ElasticMaterial& material, std::sp
   System system = assemble(nodes, options.element, material);
   for (const NodeMass& lumped : lump(mesh, carried)) system.add_mass(lumped.node, lumped.mass);
   const EigenResult pairs = lowest_eigenpairs(system, held_dofs(nodes), {.modes = options.modes});
+  const Eigen::VectorXd eigenvalues =
+      stiffness_quotients(nodes, system, material.poisson_ratio, pairs.vectors);
 
   const auto frequency = [&](double lambda) {
     return std::sqrt(std::max(0.0, lambda)) / (2 * kPi * system.time);
   };
   Modes modes;
   for (Eigen::Index i = 0; i < pairs.eigenvalues.size(); ++i) {
-    modes.frequencies.push_back(frequency(pairs.eigenvalues[i]));
+    modes.frequencies.push_back(frequency(eigenvalues[i]));
+    modes.rounding = std::max(modes.rounding, std::abs(pairs.eigenvalues[i] / eigenvalues[i] - 1));
     modes.shapes.push_back(pairs.vectors.col(i) / std::sqrt(system.mass_unit));
     modes.tip_direction.push_back(direction_of_largest(pairs.vectors, static_cast<int>(i)));
   }
@@ -78,7 +85,7 @@ Modes lowest_modes(const TetMesh& mesh, const ElasticMaterial& material, std::sp
   modes.dof = pairs.dof;
   modes.iterations = pairs.iterations;
   modes.residual = pairs.residual;
-  modes.converged = pairs.converged;
+  modes.converged = pairs.converged && modes.rounding < kLargestRounding;
   return modes;
 }
 

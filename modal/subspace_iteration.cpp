@@ -33,8 +33,10 @@ class SubspaceIteration {
       throw Error(Error::Kind::Input, "the solid has no free nodes: all of it is held",
                   "hold only the root interface");
     if (!cholesky_.positive_definite())
-      throw Error(Error::Kind::Input, "the stiffness matrix is singular: a part of the solid is not held",
-                  "the solid must be one connected body, held on faces that are not all in one line");
+      throw Error(
+          Error::Kind::Input,
+          "the stiffness matrix is singular: the solid is not held, or too thin (below 1/5000 of its length)",
+          "hold it on a face, or make it thicker");
   }
 
   EigenResult run() {

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <map>
+#include <unordered_map>
 
 #include "mesher/base/error.h"
 #include "mesher/base/mesh_checks.h"
@@ -51,40 +51,60 @@ size_t drop_duplicates(Mesh& mesh, bool& paired) {
   return dropped;
 }
 
+/// Longest edge of a triangle without area (corners in one line), or -1 if it has area.
+int flat_edge(const Mesh& mesh, const Triangle& t) {
+  double edge[3];
+  for (int k = 0; k < 3; ++k) edge[k] = (mesh.positions[t[(k + 1) % 3]] - mesh.positions[t[k]]).norm();
+  const auto longest = static_cast<int>(std::max_element(edge, edge + 3) - edge);
+  return 2 * area_vector(mesh, t).norm() <= 1e-9 * edge[longest] * edge[longest] ? longest : -1;
+}
+
 /// A triangle whose corner c lies on its edge ab is removed by giving c to the neighbour across ab: (b, a, d)
-/// becomes (c, a, d) and (b, c, d). On a border it is dropped. Returns how many went.
+/// becomes (c, a, d), and the flat one (b, c, d). On a border it is dropped. Returns how many went.
 size_t remove_flat_triangles(Mesh& mesh) {
+  std::vector<uint32_t> flat;
+  for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
+    if (flat_edge(mesh, mesh.triangles[i]) >= 0) flat.push_back(i);
+  if (flat.empty()) return 0;
+
+  std::unordered_map<uint64_t, uint32_t> triangle_at;  // by directed edge
+  const auto key = [](uint32_t from, uint32_t to) { return uint64_t{from} << 32 | to; };
+  const auto enter = [&](uint32_t i) {
+    for (int k = 0; k < 3; ++k) triangle_at[key(mesh.triangles[i][k], mesh.triangles[i][(k + 1) % 3])] = i;
+  };
+  for (uint32_t i = 0; i < mesh.triangles.size(); ++i) enter(i);
+  std::vector<uint8_t> dropped(mesh.triangles.size(), 0);
   size_t removed = 0;
-  // One at a time, as each changes its neighbour; a removal never makes a new flat triangle out of a proper
-  // one unless d lies on the line too, and then the count of triangles bounds the loop.
-  for (size_t round = 0; round < mesh.triangles.size() + removed; ++round) {
-    uint32_t flat = Adjacency::kNone, longest = 0;
-    for (uint32_t i = 0; i < mesh.triangles.size() && flat == Adjacency::kNone; ++i) {
-      double edge[3];
-      for (int k = 0; k < 3; ++k)
-        edge[k] =
-            (mesh.positions[mesh.triangles[i][(k + 1) % 3]] - mesh.positions[mesh.triangles[i][k]]).norm();
-      longest = static_cast<uint32_t>(std::max_element(edge, edge + 3) - edge);
-      if (2 * area_vector(mesh, mesh.triangles[i]).norm() <= 1e-9 * edge[longest] * edge[longest]) flat = i;
-    }
-    if (flat == Adjacency::kNone) break;
-    const Triangle t = mesh.triangles[flat];
+  // A flip can leave another flat one (d on the line too); the bound ends what would go in circles.
+  for (size_t steps = 0; !flat.empty() && steps < 4 * mesh.triangles.size(); ++steps) {
+    const uint32_t i = flat.back();
+    flat.pop_back();
+    const int longest = dropped[i] ? -1 : flat_edge(mesh, mesh.triangles[i]);
+    if (longest < 0) continue;
+    const Triangle t = mesh.triangles[i];
     const uint32_t a = t[longest], b = t[(longest + 1) % 3], c = t[(longest + 2) % 3];
-    for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
-      for (int k = 0; k < 3 && i != flat; ++k) {
-        Triangle& n = mesh.triangles[i];
-        if (n[k] == b && n[(k + 1) % 3] == a) {
-          const uint32_t d = n[(k + 2) % 3];
-          n = {c, a, d};
-          mesh.triangles[flat] = {b, c, d};
-          flat = Adjacency::kNone;
-          break;
-        }
-        if (flat == Adjacency::kNone) break;
-      }
-    if (flat != Adjacency::kNone) mesh.triangles.erase(mesh.triangles.begin() + flat);
+    const auto neighbour = triangle_at.find(key(b, a));
     ++removed;
+    if (neighbour == triangle_at.end() || dropped[neighbour->second]) {
+      dropped[i] = 1;
+      continue;
+    }
+    const uint32_t j = neighbour->second;
+    const Triangle n = mesh.triangles[j];
+    const uint32_t d = n[0] != a && n[0] != b ? n[0] : n[1] != a && n[1] != b ? n[1] : n[2];
+    triangle_at.erase(key(a, b));
+    triangle_at.erase(key(b, a));
+    mesh.triangles[j] = {c, a, d};
+    mesh.triangles[i] = {b, c, d};
+    for (const uint32_t k : {i, j}) {
+      enter(k);
+      if (flat_edge(mesh, mesh.triangles[k]) >= 0) flat.push_back(k);
+    }
   }
+  size_t kept = 0;
+  for (size_t i = 0; i < dropped.size(); ++i)
+    if (!dropped[i]) mesh.triangles[kept++] = mesh.triangles[i];
+  mesh.triangles.resize(kept);
   return removed;
 }
 

@@ -3,16 +3,9 @@
 
 #include <vector>
 
-#include "mesher/base/mesh.h"
+#include "mesher/surface/line_cut.h"
 
 namespace liana {
-
-/// A surface with the distance from its root at every vertex and marks on its triangles.
-struct MarkedSurface {
-  Mesh mesh;
-  std::vector<double> distance;  ///< m, per vertex
-  std::vector<uint8_t> is_root;  ///< per triangle
-};
 
 /// Distances at which a clamped branch wants rings: 0.5 d, 1.5 d, 3.5 d, ... while steps are below length/6,
 /// then even steps of at most length/6. Ascending, without 0 and length.

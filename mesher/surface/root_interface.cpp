@@ -37,7 +37,7 @@ std::vector<uint8_t> flood_to_crease(const Mesh& mesh, const Adjacency& adjacenc
     const uint32_t triangle = stack.back();
     stack.pop_back();
     for (const uint32_t next : adjacency.across[triangle]) {
-      if (marked[next]) continue;
+      if (next == Adjacency::kNone || marked[next]) continue;
       const Vec3 n = normal(next);
       if (n.dot(normal(triangle)) < crease || n.dot(axis) < cone) continue;
       marked[next] = 1;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "mesher/base/error.h"
 #include "mesher/base/mesh_checks.h"
@@ -40,7 +41,7 @@ std::vector<double> distance_from_root(const Mesh& mesh, const std::vector<uint8
 
 /// Closes the open ends, turns the surface outward and finds the root on it.
 Rooted body(const Mesh& shell, const Adjacency& adjacency, const std::vector<std::vector<uint32_t>>& loops,
-            const Attachment& attachment) {
+            const Attachment& attachment, const std::string& where) {
   Rooted result;
   Mesh& mesh = result.surface.mesh;
   mesh = shell;
@@ -49,7 +50,12 @@ Rooted body(const Mesh& shell, const Adjacency& adjacency, const std::vector<std
   std::vector<uint8_t>& is_root = result.surface.is_root;
   is_root.assign(mesh.triangles.size(), 0);
   for (size_t i = 0; i < loops.size(); ++i) is_root.insert(is_root.end(), add_lid(mesh, loops[i]), i == root);
-  if (signed_volume(mesh) < 0) {
+  // V / A^1.5 is 0.14 √(d/ℓ) of a branch and t / (2 √A) of a plate: 1e-7 is thinner than anything that grows.
+  const double volume = signed_volume(mesh);
+  if (!(std::abs(volume) > 1e-7 * std::pow(surface_area(mesh), 1.5)))
+    throw Error(Error::Kind::Input, where + ": its surface encloses no volume",
+                "give it thickness, or model it as an open sheet");
+  if (volume < 0) {
     for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
     result.route = "+turned-outward";
   }
@@ -77,11 +83,13 @@ Rooted sheet(const Mesh& shell, const std::vector<std::vector<uint32_t>>& loops,
   result.route = "sheet-extruded";
   const std::vector<std::vector<uint8_t>> marked = root_edges(shell, loops, attachment);
   std::vector<uint8_t> source(shell.positions.size(), 0);
+  std::set<std::pair<uint32_t, uint32_t>> root;  // border edges; cuts never touch them, their distance is 0
   for (size_t l = 0; l < loops.size(); ++l)
     for (size_t i = 0; i < loops[l].size(); ++i) {
       const uint32_t a = loops[l][i], b = loops[l][(i + 1) % loops[l].size()];
       if (!marked[l][i]) continue;
       source[a] = source[b] = 1;
+      root.insert({a, b});
       result.diameter += (shell.positions[a] - shell.positions[b]).norm();
     }
   MarkedSurface graded{shell, geodesic_distance(shell, source),
@@ -97,16 +105,10 @@ Rooted sheet(const Mesh& shell, const std::vector<std::vector<uint32_t>>& loops,
   result.surface.distance.insert(result.surface.distance.end(), graded.distance.begin(),
                                  graded.distance.end());
   result.surface.is_root.assign(2 * graded.mesh.triangles.size(), 0);
-  // Cuts never touch the root edges (their distance is 0), so their ends are still neighbours on the border.
   for (const std::vector<uint32_t>& loop : border)
-    for (size_t i = 0; i < loop.size(); ++i) {
-      const uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
-      bool is_root = false;
-      for (size_t l = 0; l < loops.size(); ++l)
-        for (size_t k = 0; k < loops[l].size(); ++k)
-          is_root = is_root || (marked[l][k] && loops[l][k] == a && loops[l][(k + 1) % loops[l].size()] == b);
-      result.surface.is_root.insert(result.surface.is_root.end(), 2, is_root);
-    }
+    for (size_t i = 0; i < loop.size(); ++i)
+      result.surface.is_root.insert(result.surface.is_root.end(), 2,
+                                    root.contains({loop[i], loop[(i + 1) % loop.size()]}));
   return result;
 }
 
@@ -139,18 +141,17 @@ SolidDomain make_solid(const SegmentedPlant& plant, DomainId id) {
   const Attachment attachment(plant, id);
   const bool flat = !loops.empty() && is_sheet(shell.mesh, loops);
   Rooted rooted = flat ? sheet(shell.mesh, loops, domain.thickness, attachment)
-                       : body(shell.mesh, adjacency, loops, attachment);
+                       : body(shell.mesh, adjacency, loops, attachment, where);
 
   SolidDomain solid;
   solid.length = rooted.length;
   solid.volume = signed_volume(rooted.surface.mesh);
-  // π/4 (d/ℓ)² = 1e-10 is a branch 90,000 times as long as thick, beyond anything that grows.
   if (!std::isfinite(solid.length) || !(solid.length > 0))
     throw fail("it has no length", "check its surface");
-  if (!(solid.volume > 1e-10 * std::pow(solid.length, 3)))
-    throw fail(fmt::format("its surface encloses no volume ({:.3g} m³ at {:.3g} m length)", solid.volume,
-                           solid.length),
-               "give it thickness, or model it as an open sheet");
+  const Adjacency closed = find_adjacency(rooted.surface.mesh);
+  if (!closed.manifold || !closed.oriented || !closed.closed)
+    throw fail("its surface touches itself where it is open",
+               "separate the edges of its holes, or close them");
   if (self_intersects(rooted.surface.mesh))
     throw fail("its surface passes through itself once closed",
                "straighten bends sharper than the branch is thick, or remove inner faces");

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "mesher/base/error.h"
+#include "mesher/tets/assertion_guard.h"
 #define TETLIBRARY
 #include <tetgen.h>
 
@@ -62,23 +63,26 @@ void fill_input(tetgenio& in, std::span<const Vec3> positions, std::span<const T
 
 /// The steps of TetGen's tetrahedralize() for the switches p, Y and q, without its exactinit() and rand().
 void mesh_volume(tetgenbehavior& behavior, tetgenio& in, tetgenio& out) {
-  tetgenmesh mesh;
+  // When TetGen throws or fails an assertion, its own destructor reads freed memory: such a mesh is given up
+  // as it is.
+  auto* mesh = new tetgenmesh;
   clock_t ticks = 0;
-  mesh.b = &behavior;
-  mesh.in = &in;
-  mesh.initializepools();
-  mesh.transfernodes();
-  mesh.incrementaldelaunay(ticks);
-  mesh.meshsurface();
-  mesh.recoverboundary(ticks);
-  mesh.carveholes();
-  if (mesh.subvertstack->objects > 0) mesh.suppresssteinerpoints();
-  mesh.recoverdelaunay();
-  mesh.delaunayrefinement();
-  mesh.optimizemesh();
-  mesh.outnodes(&out);
-  mesh.outelements(&out);
-  mesh.outsubfaces(&out);
+  mesh->b = &behavior;
+  mesh->in = &in;
+  mesh->initializepools();
+  mesh->transfernodes();
+  mesh->incrementaldelaunay(ticks);
+  mesh->meshsurface();
+  mesh->recoverboundary(ticks);
+  mesh->carveholes();
+  if (mesh->subvertstack->objects > 0) mesh->suppresssteinerpoints();
+  mesh->recoverdelaunay();
+  mesh->delaunayrefinement();
+  mesh->optimizemesh();
+  mesh->outnodes(&out);
+  mesh->outelements(&out);
+  mesh->outsubfaces(&out);
+  delete mesh;
 }
 
 }  // namespace
@@ -96,13 +100,17 @@ TetGenResult run_tetgen(std::span<const Vec3> positions, std::span<const Triangl
   require(behavior.parse_commandline(switches.data()), "TetGen refuses its switches");
   behavior.optscheme = polish == Polish::Flips ? 1 : 7;
   behavior.no_sort = 1;
-  // Memory in blocks of the mesh's size; TetGen's default blocks spend a fifth of a small domain's time in page faults.
+  // Memory in blocks of the mesh's size; TetGen's default blocks spend a fifth of a small domain's time in
+  // page faults.
   const int block = std::clamp(static_cast<int>(2 * positions.size()), 64, 8188);
   behavior.vertexperblock = behavior.shellfaceperblock = block;
   behavior.tetrahedraperblock = 4 * block;
   behavior.brio_hilbert = 0;
   try {
-    mesh_volume(behavior, in, out);
+    if (!survives_assertions([&] { mesh_volume(behavior, in, out); })) {
+      result.failure = "TetGen failed an assertion of its own";
+      return result;
+    }
   } catch (int code) {
     result.failure =
         code == 3 ? "TetGen found a self-intersection" : fmt::format("TetGen gave up (code {})", code);

@@ -25,8 +25,8 @@ namespace fs = std::filesystem;
 struct SimulateArguments {
   fs::path scene, png, mp4, glb, report;
   std::optional<double> seconds;
-  double video_seconds = 10, sway_seconds = 4;
-  std::vector<int> size = {1280, 720};
+  double video_seconds = 8, sway_seconds = 4;
+  std::vector<int> size = {1280, 720}, video_size = {854, 480};
   unsigned threads = 0;
 };
 
@@ -68,6 +68,7 @@ std::string report_json(const World& world, double total_seconds, double render_
   json["max_penetration_m"] = report.max_penetration;
   json["anchors"] = report.anchors;
   json["redone_steps"] = report.redone_steps;
+  json["contact_passes"] = report.contact_passes;
   json["lost_steps"] = report.lost_steps;
   json["seconds"] = {{"total", total_seconds},
                      {"physics", report.seconds.physics},
@@ -103,7 +104,10 @@ int simulate(const SimulateArguments& arguments) {
   std::optional<HeadlessRenderer> renderer;
   std::optional<VideoWriter> video;
   if (!arguments.png.empty() || !arguments.mp4.empty()) renderer.emplace();
-  if (!arguments.mp4.empty()) video.emplace(arguments.mp4, width / 2 * 2, height / 2 * 2, kFrameRate);
+  FrameOptions video_frame;
+  video_frame.width = arguments.video_size[0] / 2 * 2;
+  video_frame.height = arguments.video_size[1] / 2 * 2;
+  if (!arguments.mp4.empty()) video.emplace(arguments.mp4, video_frame.width, video_frame.height, kFrameRate);
   Film film(arguments, steps, scene.time_step);
   const Camera camera = world.camera();
 
@@ -116,7 +120,7 @@ int simulate(const SimulateArguments& arguments) {
       const size_t due = film.due(static_cast<double>(i) * scene.time_step);
       if (video && due > 0) {
         const Stopwatch watch;
-        const Image frame = renderer->render(world.drawing(), camera, {.width = width / 2 * 2, .height = height / 2 * 2});
+        const Image frame = renderer->render(world.drawing(), camera, video_frame);
         for (size_t copy = 0; copy < due; ++copy) video->add(frame);
         render_seconds += watch.seconds();
       }
@@ -149,8 +153,10 @@ void add_simulate_verb(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.1, 3600.0))->capture_default_str();
   verb->add_option("--true-pace", arguments->sway_seconds, "How many of them are at the true pace, at the end")
       ->check(CLI::Range(0.0, 3600.0))->capture_default_str();
-  verb->add_option("--size", arguments->size, "Width and height in pixels [1280 720]")
+  verb->add_option("--size", arguments->size, "Width and height of the picture in pixels [1280 720]")
       ->expected(2)->check(CLI::Range(16, 8192));
+  verb->add_option("--video-size", arguments->video_size, "Width and height of the video [854 480]")
+      ->expected(2)->check(CLI::Range(16, 4096));
   verb->add_option("--export", arguments->glb, "Write the end as glTF (.glb)");
   verb->add_option("--report", arguments->report, "Write counts, state hash and timings as JSON");
   verb->add_option("--threads", arguments->threads, "Threads to use [all cores]; the result does not depend on it")

@@ -68,6 +68,12 @@ std::string verify_table(const Bake& bake, const VerifyReport& report, const Ver
   text += fmt::format("step {:g} ms, {} substep(s), rho {:g}\n", 1e3 * scheme.dt, scheme.substeps,
                       scheme.rho_infinity);
   if (!report.calibration.note.empty()) text += "note: " + report.calibration.note + "\n";
+  text += fmt::format("under its own weight for 10 s: moved {:.3g} mm\n", 1e3 * report.standing.moved);
+  if (!report.standing.stable)
+    text +=
+        "note: it does not stand by itself: a slight push makes it topple; anchor it, or give its lower "
+        "levels a "
+        "higher frequency\n";
   if (!report.within && !every_domain) text += "\nmissed:\n" + domain_rows(bake, report, true);
   text += report.within ? "What was baked is what moves.\n" : "Some domains do not move as baked.\n";
   return text;
@@ -98,6 +104,8 @@ std::string verify_json(const Bake& bake, const VerifyReport& report) {
                     {"dt", scheme.dt},
                     {"substeps", scheme.substeps},
                     {"rho_infinity", scheme.rho_infinity},
+                    {"moved_at_rest_m", report.standing.moved},
+                    {"stands", report.standing.stable},
                     {"note", report.calibration.note}};
   return all.dump(1) + "\n";
 }

@@ -3,9 +3,9 @@
 #include <fmt/core.h>
 
 #include "materials/law/toml_table.h"
-#include "mesher/base/box_mesh.h"
 #include "mesher/base/error.h"
 #include "mesher/io/plant_file.h"
+#include "runtime/sim/collision/box_mesh.h"
 
 namespace liana {
 namespace {
@@ -48,7 +48,7 @@ SceneObstacle read_obstacle(const TomlTable& table) {
     if (!(size.minCoeff() >= 1e-3 && size.maxCoeff() <= kFar))
       box->fail("size", fmt::format("must lie between 0.001 and {} m in every direction", kFar));
     box->refuse_unknown_keys();
-    obstacle.mesh = box_mesh(centre, size);
+    obstacle.mesh = box_mesh(centre - size / 2, centre + size / 2);
   } else if (table.has("mesh")) {
     obstacle.mesh = read_obstacle_mesh(existing_file(table, "mesh"));
     const Vec3 position = table.vector_or("position", Vec3::Zero());

@@ -16,6 +16,28 @@
 namespace liana {
 namespace {
 
+constexpr double kGroundHeight = 0;  // m: the ground is level, as the renderer draws it
+
+std::vector<std::unique_ptr<SdfObstacle>> obstacles_of(const Scene& scene) {
+  std::vector<std::unique_ptr<SdfObstacle>> obstacles;
+  for (const SceneObstacle& obstacle : scene.obstacles) {
+    try {
+      obstacles.push_back(std::make_unique<SdfObstacle>(obstacle.mesh));
+    } catch (const Error& error) {
+      throw Error(error.kind,
+                  fmt::format("{}: obstacle '{}': {}", scene.file.string(), obstacle.name, error.what()),
+                  error.hint);
+    }
+  }
+  return obstacles;
+}
+
+std::vector<const SdfObstacle*> pointers_to(const std::vector<std::unique_ptr<SdfObstacle>>& obstacles) {
+  std::vector<const SdfObstacle*> pointers;
+  for (const auto& obstacle : obstacles) pointers.push_back(obstacle.get());
+  return pointers;
+}
+
 GustParameters gusts(const Scene& scene) {
   GustParameters gusts;
   gusts.mean = scene.wind.velocity;
@@ -27,18 +49,15 @@ GustParameters gusts(const Scene& scene) {
 
 }  // namespace
 
-World::World(const Scene& scene, unsigned threads) : scene_(scene), threads_(threads), wind_(gusts(scene)) {
-  for (const SceneObstacle& obstacle : scene.obstacles) {
-    try {
-      obstacles_.push_back(std::make_unique<SdfObstacle>(obstacle.mesh));
-    } catch (const Error& error) {
-      throw Error(error.kind,
-                  fmt::format("{}: obstacle '{}': {}", scene.file.string(), obstacle.name, error.what()), error.hint);
-    }
-    solids_.push_back(obstacles_.back().get());
-  }
+World::World(const Scene& scene, unsigned threads)
+    : scene_(scene),
+      threads_(threads),
+      obstacles_(obstacles_of(scene)),
+      solids_(pointers_to(obstacles_)),
+      open_wind_(gusts(scene)),
+      wind_(open_wind_, solids_, kGroundHeight) {
   for (const ScenePlant& entry : scene.plants) add_baked(entry);
-  for (const SceneClimber& entry : scene.climbers) add_climber(entry, scene.seed + inhabitants_.size());
+  for (size_t i = 0; i < scene.climbers.size(); ++i) add_climber(scene.climbers[i], scene.seed + i);
 }
 
 void World::add_baked(const ScenePlant& entry) {
@@ -88,18 +107,17 @@ void World::step_inhabitant(size_t index) {
   report.seconds.growth += timed([&] {
     if (self.climber) self.climber->grow(self.plant, solids_, scene_.to_sun, self.growth_speed * scene_.time_step);
   });
-  report.seconds.collision += timed([&] {
-    const ContactReport contacts = self.contacts.gather(self.plant, {solids_, 0.0}, self.springs);
-    report.max_penetration = std::max(report.max_penetration, contacts.max_penetration);
-  });
-  report.seconds.physics += timed([&] {
-    if (scene_.wind.velocity.norm() > 0) add_wind(self.plant, wind_, time(), {}, self.springs);
-    if (grabbed_ && grabbed_->plant == index) self.springs.push_back(grabbed_->spring);
-    const StepReport step =
-        self.stepper.step(self.plant, {}, self.springs, {.dt = scene_.time_step, .gravity = scene_.gravity});
-    report.redone_steps += step.redone > 0;
-    report.lost_steps += !step.finite;
-  });
+  const Stopwatch watch;
+  if (scene_.wind.velocity.norm() > 0) add_wind(self.plant, wind_, time(), {}, self.springs);
+  if (grabbed_ && grabbed_->plant == index) self.springs.push_back(grabbed_->spring);
+  const ContactStepReport done = self.stepper.step(self.plant, {solids_, kGroundHeight}, {}, self.springs,
+                                                   {.dt = scene_.time_step, .gravity = scene_.gravity});
+  report.max_penetration = std::max(report.max_penetration, done.contacts.max_penetration);
+  report.contact_passes += static_cast<size_t>(done.passes - 1);
+  report.redone_steps += done.step.redone > 0;
+  report.lost_steps += !done.step.finite;
+  report.seconds.collision += done.collision_seconds;
+  report.seconds.physics += watch.seconds() - done.collision_seconds;
 }
 
 void World::draw(DrawScene& scene) const { add_to(scene, false); }
@@ -144,6 +162,7 @@ WorldReport World::report() const {
     total.anchors += inhabitant->plant.anchors.size();
     total.max_penetration = std::max(total.max_penetration, own.max_penetration);
     total.redone_steps += own.redone_steps;
+    total.contact_passes += own.contact_passes;
     total.lost_steps += own.lost_steps;
     total.seconds.growth += own.seconds.growth;
     total.seconds.collision += own.seconds.collision;

@@ -7,11 +7,11 @@
 
 #include "runtime/growth/climber.h"
 #include "runtime/scene/scene_file.h"
-#include "runtime/sim/collision/contacts.h"
-#include "runtime/sim/time_step.h"
+#include "runtime/sim/collision/contact_step.h"
 #include "runtime/view/camera.h"
 #include "runtime/view/plant_drawing.h"
 #include "runtime/view/simulation_view.h"
+#include "runtime/wind/sheltered_wind.h"
 #include "runtime/wind/steady_gust_wind.h"
 
 namespace liana {
@@ -26,6 +26,7 @@ struct WorldReport {
   size_t steps = 0, particles = 0, anchors = 0;
   double max_penetration = 0;  ///< m, deepest that any particle ever was in an obstacle or the ground
   size_t redone_steps = 0;     ///< steps that the solver took again with finer substeps
+  size_t contact_passes = 0;     ///< taken again because a contact showed only at the step's end
   size_t lost_steps = 0;       ///< steps that did not stay finite and were stopped
   PhaseSeconds seconds;
 };
@@ -56,12 +57,11 @@ class World final : public Simulation {
  private:
   struct Inhabitant {
     Plant plant;
-    PlantStepper stepper;
-    Contacts contacts;
+    ContactStepper stepper;
     std::optional<Climber> climber;
     double growth_speed = 1;
     PlantLook look;
-    std::vector<WorldSpring> springs;  // contacts, wind and grab of the step
+    std::vector<WorldSpring> springs;  // wind, grab and contacts of the step
     WorldReport report;
   };
   struct Grab {
@@ -79,7 +79,8 @@ class World final : public Simulation {
   unsigned threads_;
   std::vector<std::unique_ptr<SdfObstacle>> obstacles_;
   std::vector<const SdfObstacle*> solids_;
-  SteadyGustWind wind_;
+  SteadyGustWind open_wind_;
+  ShelteredWind wind_;  // the same, calmed by obstacles and the ground
   std::vector<std::unique_ptr<Inhabitant>> inhabitants_;
   std::optional<Grab> grabbed_;
   size_t steps_ = 0;

@@ -55,6 +55,7 @@ VerifyReport verify_bake(const Bake& bake, const VerifyOptions& options, unsigne
     report.max_damping_error = std::max(report.max_damping_error, v.damping_error);
     report.within = report.within && v.within;
   }
+  report.standing = check_standing(plant, progress);
   return report;
 }
 

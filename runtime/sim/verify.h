@@ -7,6 +7,7 @@
 #include "mesher/base/progress.h"
 #include "runtime/sim/calibration.h"
 #include "runtime/sim/frequency_probe.h"
+#include "runtime/sim/standing.h"
 
 namespace liana {
 
@@ -34,6 +35,7 @@ struct VerifyReport {
   CalibrationReport calibration;
   double max_frequency_error = 0, max_damping_error = 0;  ///< a domain that does not swing counts as 1
   bool within = true;
+  Standing standing;  ///< of the whole plant under gravity; no part of `within`
 };
 
 /// Makes the plant, then per domain: parent held, descendants' mass lumped, plucked, stepped, measured.

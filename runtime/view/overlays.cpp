@@ -25,6 +25,9 @@ void draw_stats(const OverlayText& text, float margin) {
   ImGui::SetNextWindowBgAlpha(0.55f);
   if (ImGui::Begin("stats", nullptr, kPlain) &&
       ImGui::BeginTable("numbers", 2, ImGuiTableFlags_SizingFixedFit)) {
+    // Fixed widths: a column that follows its text is a frame late and cuts the text off.
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, 5.5f * ImGui::GetFontSize());
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthFixed, 6.5f * ImGui::GetFontSize());
     row("time", "%.2f s", text.stats.time);
     row("steps", "%zu", text.stats.steps);
     row("particles", "%zu", text.stats.particles);

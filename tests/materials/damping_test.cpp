@@ -94,7 +94,7 @@ TEST(Monotonicity, HoldsExactlyOutsideTheGapAroundOne) {
 // The interval is where ν* lies outside (ν, κν).
 TEST(Monotonicity, AgreesWithWhereTheMinimumLies) {
   for (double kappa : {1.5, 2.0, 5.0})
-    for (int i = 1; i < 197; ++i) {
+    for (int i = 1; i < 197; ++i) {  // 197 is prime: no delta falls on a bound
       const DampingLaw law = with(kappa, 1 / kappa + i / 197. * (kappa - 1 / kappa));
       const double least = least_damped_frequency(law, 1);
       EXPECT_EQ(is_monotonic(law), least <= 1 || least >= kappa) << kappa << " " << law.delta;

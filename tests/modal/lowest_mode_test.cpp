@@ -48,7 +48,6 @@ TEST(LowestMode, IsWithinOnePercentOnBentAndTaperedBranches) {
     const TetMesh tets = tetrahedralize(branch.mesh, branch.is_root);
     const double fine = lowest_modes(refined(refined(tets)), {}, {}).frequencies[0];
     EXPECT_NEAR(lowest_modes(tets, {}, {}).frequencies[0], fine, 0.01 * fine) << "aspect " << aspect;
-    printf("%g\n", lowest_modes(tets, {}, {}).frequencies[0] / fine - 1);
   }
 }
 
@@ -104,6 +103,30 @@ TEST(LowestMode, SwaysAlikeBothWaysWhenRound) {
   for (const Vec3& direction : modes.sway.directions) EXPECT_LT(std::abs(direction.y()), 0.01);
   // The static deflection's Rayleigh quotient lies 0.4 % above the mode's frequency.
   EXPECT_NEAR(modes.sway.frequencies[0] / modes.frequencies[0], 1.004, 0.002);
+}
+
+// In exact arithmetic f / t tends to a limit as t / ℓ falls; the assembled K alone would be 1 % off at
+// 1/2000.
+TEST(LowestMode, StaysExactForVeryThinBlades) {
+  const auto ratio = [](double thickness) {
+    const TetMesh blade = make_block(
+        12, 4, 1, [&](const Vec3& p) { return Vec3(0.1 * p.x(), 0.03 * p.y(), thickness * p.z()); });
+    const Modes modes = lowest_modes(blade, {}, {});
+    EXPECT_TRUE(modes.converged);
+    return modes.frequencies[0] / thickness;
+  };
+  EXPECT_NEAR(ratio(5e-5) / ratio(2e-4), 1, 5e-4);
+  EXPECT_NEAR(ratio(1e-4) / ratio(2e-4), 1, 5e-4);
+}
+
+TEST(LowestMode, SaysWhenABladeIsTooThinForDoublePrecision) {
+  const TetMesh blade =
+      make_block(40, 16, 1, [](const Vec3& p) { return Vec3(0.1 * p.x(), 0.03 * p.y(), 1e-5 * p.z()); });
+  try {
+    EXPECT_FALSE(lowest_modes(blade, {}, {}).converged);
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("thin"), std::string::npos);
+  }
 }
 
 class Invariance : public testing::Test {

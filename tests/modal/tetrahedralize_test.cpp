@@ -1,10 +1,12 @@
 #include "mesher/tets/tetrahedralize.h"
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "mesher/base/error.h"
+#include "mesher/tets/assertion_guard.h"
 #include "tests/support/block_tets.h"
 #include "tests/support/shapes.h"
 
@@ -195,6 +197,17 @@ TEST_F(BadSurface,
   for (Triangle t : inner.triangles) box.triangles.push_back({t[0] + 8, t[2] + 8, t[1] + 8});
   box.positions.insert(box.positions.end(), inner.positions.begin(), inner.positions.end());
   says(box, "of its volume");
+}
+
+// TetGen's library finds the symbol by the dynamic linker, as here. Without the guard the test would abort.
+TEST(AssertionGuardDeathTest, TurnsAssertionsOfLibrariesIntoFailure) {
+  using AssertFail = void (*)(const char*, const char*, unsigned, const char*);
+  const auto fail = reinterpret_cast<AssertFail>(dlsym(RTLD_DEFAULT, "__assert_fail"));
+  ASSERT_NE(fail, nullptr);
+  EXPECT_FALSE(survives_assertions([&] { fail("n >= 3", "tetgen.cxx", 1, "removeedgebyflips"); }));
+  EXPECT_TRUE(survives_assertions([] {}));
+  EXPECT_THROW(survives_assertions([] { throw 3; }), int);
+  EXPECT_DEATH(fail("n >= 3", "elsewhere.cpp", 1, "f"), "n >= 3");
 }
 
 }  // namespace
