@@ -112,6 +112,12 @@ void Climber::germinate(Plant& plant, const Surroundings& around) {
   }
 }
 
+// Towards the end of the particles the leaders have precedence, so that a small plant climbs high rather than
+// wide.
+bool Climber::may_grow(const Plant& plant, int level) const {
+  return plant.particles.size() < parameters_.max_particles * (1 - 0.15 * std::min(level, 3));
+}
+
 void Climber::start_shoot(Plant& plant, const Attachment& at, BranchId parent, const Vec3& direction,
                           Shoot shoot) {
   Branch branch;
@@ -177,15 +183,15 @@ void Climber::finish_node(Plant& plant, size_t index, const Surroundings& around
     young_radius_.push_back(0);
     joint_length_.push_back(0);
   }
-  for (const Bud& bud : breaking_buds(shoot, plant.branches[branch.index()].level, head, forward, outward,
-                                      parameters_.branching, crowding_, branching_))
-    if (plant.particles.size() < parameters_.max_particles)
+  const int level = plant.branches[branch.index()].level;
+  for (const Bud& bud :
+       breaking_buds(shoot, level, head, forward, outward, parameters_.branching, crowding_, branching_))
+    if (may_grow(plant, level + 2) && head.y() > around.ground_height + parameters_.segment_length)
       start_shoot(plant, here, branch, bud.direction,
                   {BranchId(), bud.tip_radius, bud.course, shoot.longest / 2, shoot.light});
 
   shoot.growing = plant.branches[branch.index()].length < shoot.longest &&
-                  shoot.free_length < parameters_.longest_free &&
-                  plant.particles.size() < parameters_.max_particles;
+                  shoot.free_length < parameters_.longest_free && may_grow(plant, level);
   if (shoot.growing) append_stem(plant, shoot, here, plant.motion[node.index()].orientation);
   shoots_[index] = shoot;
 }

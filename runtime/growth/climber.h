@@ -56,6 +56,7 @@ class Climber {
   };
   void grow_once(Plant& plant, const Surroundings& around, double dt);
   void germinate(Plant& plant, const Surroundings& around);
+  bool may_grow(const Plant& plant, int level) const;
   void start_shoot(Plant& plant, const Attachment& at, BranchId parent, const Vec3& direction, Shoot shoot);
   ParticleId append_stem(Plant& plant, const Shoot& shoot, const Attachment& at, const Quat& orientation);
   void finish_node(Plant& plant, size_t shoot, const Surroundings& around);

@@ -56,8 +56,9 @@ bool grow_tip(Plant& plant, const Shoot& shoot, const ClimberParameters& paramet
   lengthen_segment(plant, tip, by);
   branch.length += by;
 
-  // Over an edge, the middle would cut the corner that the head has passed.
-  for (double part : {-0.5, 0.0, 0.5, 1.0})
+  // Over an edge, the middle would cut the corner that the head has passed; in a corner, leaving one solid
+  // may lead into another: twice.
+  for (double part : {-0.5, 0.0, 0.5, 1.0, 0.0, 1.0})
     keep_out(plant, tip, {0, part * particle.half_length, 0}, particle.half_width, around);
   return 2 * particle.half_length >= parameters.segment_length * (1 - 1e-9);
 }
