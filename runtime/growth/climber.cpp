@@ -14,6 +14,7 @@ namespace liana {
 namespace {
 
 constexpr double kYoungestSegment = 0.25;  // length of a new particle, of a full-grown one's
+constexpr double kLongestStep = 0.05;      // growth s; longer ones are cut
 constexpr double kThickenEvery = 0.2;      // growth s
 constexpr double kLeafStrand = 0.35;       // of the petiole's radius: what a leaf adds to the stems below
 
@@ -62,32 +63,34 @@ Climber::Climber(const ClimberParameters& parameters, const SpeciesLaw& law, con
 
 GrowthReport Climber::grow(Plant& plant, std::span<const SdfObstacle* const> obstacles, const Vec3& to_sun,
                            double dt) {
-  require(dt >= 0 && dt <= 0.1, "growth goes in steps of at most 0.1 s");
   const Surroundings around{obstacles, to_sun.normalized(), seed_.y()};
   if (plant.particles.empty()) germinate(plant, around);
+  const int parts = std::max(1, static_cast<int>(std::ceil(dt / kLongestStep - 1e-9)));
+  for (int i = 0; i < parts; ++i) grow_once(plant, around, dt / parts);
+  anchors_.update(plant, dt);
 
   GrowthReport report;
-  for (size_t i = 0; i < shoots_.size(); ++i)  // grows while it goes on
-    if (shoots_[i].growing && grow_tip(plant, shoots_[i], parameters_, around, wander_, dt))
-      finish_node(plant, i, around);
-  leaves_.grow(plant, around, dt, law_);
-  hold_on_again(plant, around);
-  anchors_.update(plant, dt);
-  if ((since_thickened_ += dt) >= kThickenEvery) {
-    thicken(
-        plant, young_radius_, joint_length_,
-        {parameters_.pipe_exponent, kLeafStrand * parameters_.leaves.petiole_radius, parameters_.thickening},
-        law_.default_material, since_thickened_);
-    since_thickened_ = 0;
-  }
   recalibrate_changed(plant, report);
   carry_grown_weight(plant, parameters_.gravity, rest_);
-
   report.tips = std::count_if(shoots_.begin(), shoots_.end(), [](const Shoot& s) { return s.growing; });
   report.leaves = leaves_.count();
   report.anchors = anchors_.count();
   report.released = anchors_.released();
   return report;
+}
+
+void Climber::grow_once(Plant& plant, const Surroundings& around, double dt) {
+  for (size_t i = 0; i < shoots_.size(); ++i)  // grows while it goes on
+    if (shoots_[i].growing && grow_tip(plant, shoots_[i], parameters_, around, wander_, dt))
+      finish_node(plant, i, around);
+  leaves_.grow(plant, around, dt, law_);
+  hold_on_again(plant, around);
+  if ((since_thickened_ += dt) < kThickenEvery) return;
+  thicken(
+      plant, young_radius_, joint_length_,
+      {parameters_.pipe_exponent, kLeafStrand * parameters_.leaves.petiole_radius, parameters_.thickening},
+      law_.default_material, since_thickened_);
+  since_thickened_ = 0;
 }
 
 // Every first shoot stands in the ground by itself, beside the others, and leans towards the support in a
@@ -213,19 +216,18 @@ void Climber::recalibrate_changed(Plant& plant, GrowthReport& report) {
     Branch& branch = plant.branches[i];
     double mass = 0;
     for (const ParticleId p : branch.particles) mass += plant.particles[p.index()].mass + carried[p.index()];
-    Calibrated& last = calibrated_[i];
+    const double base = plant.particles[branch.particles.front().index()].joint.bend_stiffness.x();
+    const Calibrated now{branch.length, mass, base / branch.stiffness_scale};
     const bool its_turn = (i + count - next_settled_ % count) % count < turns;
-    const double change = its_turn ? parameters_.settled : parameters_.recalibration;
-    if (std::abs(branch.length - last.length) <= change * last.length &&
-        std::abs(mass - last.mass) <= change * last.mass)
-      continue;
+    if (!calibrated_[i].differs(now, its_turn ? parameters_.settled : parameters_.recalibration)) continue;
     const double scaling = branch.material.mass_scaling;
     branch.material = evaluate(law_.group(branch.group), branch.length);
+    const double heavier = branch.material.mass_scaling / scaling;
     for (const ParticleId p : branch.particles) {
-      plant.particles[p.index()].mass *= branch.material.mass_scaling / scaling;
-      plant.particles[p.index()].inertia *= branch.material.mass_scaling / scaling;
+      plant.particles[p.index()].mass *= heavier;
+      plant.particles[p.index()].inertia *= heavier;
     }
-    last = {branch.length, mass * branch.material.mass_scaling / scaling};
+    calibrated_[i] = now;
     if (!recalibrate(plant, BranchId(i), carried, chain_)) ++report.out_of_range;
     ++report.recalibrated;
   }

@@ -2,6 +2,7 @@
 // law says.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -34,7 +35,7 @@ class Climber {
   Climber(const ClimberParameters& parameters, const SpeciesLaw& law, const Vec3& seed_position,
           uint64_t random_seed);
 
-  /// Lets the plant grow by dt_growth (growth s, at most 0.1) from its present, moving state: call it between
+  /// Lets the plant grow by dt_growth (growth s, >= 0) from its present, moving state: call it between
   /// time steps with a multiple of their dt. to_sun need not be unit. The plant's time scheme must be set
   /// before.
   GrowthReport grow(Plant& plant, std::span<const SdfObstacle* const> obstacles, const Vec3& to_sun,
@@ -43,9 +44,17 @@ class Climber {
   const ClimberParameters& parameters() const { return parameters_; }
 
  private:
+  /// What a branch was like when it was last calibrated.
   struct Calibrated {
-    double length = 0, mass = 0;  // of the branch and what it carries, when last calibrated
+    double length = 0;  // m
+    double mass = 0;    // kg, with what it carries
+    double base = 0;    // N·m/rad, physical stiffness of its first joint
+    bool differs(const Calibrated& now, double by) const {
+      return std::abs(now.length - length) > by * length || std::abs(now.mass - mass) > by * mass ||
+             std::abs(now.base - base) > by * base;
+    }
   };
+  void grow_once(Plant& plant, const Surroundings& around, double dt);
   void germinate(Plant& plant, const Surroundings& around);
   void start_shoot(Plant& plant, const Attachment& at, BranchId parent, const Vec3& direction, Shoot shoot);
   ParticleId append_stem(Plant& plant, const Shoot& shoot, const Attachment& at, const Quat& orientation);

@@ -65,7 +65,7 @@ struct ClimberParameters {
   double thickening = 0.12;       ///< 1/s, largest relative growth of a radius
   double recalibration =
       0.1;                ///< relative change of a branch's length or mass that lets it be calibrated at once
-  double settled = 5e-3;  ///< the same, of a branch whose turn it is: all take turns, within 2.5 s at 25 ms
+  double settled = 1e-3;  ///< the same, of a branch whose turn it is: all take turns, within 2.5 s at 25 ms
   Vec3 gravity = {0, -9.81, 0};  ///< m/s², that the plant grows under
   size_t max_particles = 5000;   ///< stems and leaves; no bud breaks and no tip goes on beyond it
   TropismParameters tropisms;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/sim/generalized_alpha.h"
+
 namespace liana {
 
 double projected_area(const Particle& particle, const Vec3& u) {
@@ -12,6 +14,7 @@ double projected_area(const Particle& particle, const Vec3& u) {
 
 void add_wind(const Plant& plant, const WindField& wind, double time, const DragOptions& options,
               std::vector<WorldSpring>& springs) {
+  const double alpha_f = GeneralizedAlpha(plant.scheme.rho_infinity).alpha_f;
   for (size_t i = 0; i < plant.particles.size(); ++i) {
     const Particle& particle = plant.particles[i];
     const Motion& motion = plant.motion[i];
@@ -27,8 +30,10 @@ void add_wind(const Plant& plant, const WindField& wind, double time, const Drag
     WorldSpring dashpot;
     dashpot.particle = ParticleId(i);
     dashpot.target = motion.position;
-    dashpot.damping = Mat3::Identity() * (options.air_density / 2 * coefficient * area * speed);
-    dashpot.target_velocity = air;
+    // The step takes forces at n+1-α_f: mixed with the present velocity by α_f, the drag is that of n+1.
+    const double drag = options.air_density / 2 * coefficient * area * speed;
+    dashpot.damping = Mat3::Identity() * (drag / (1 - alpha_f));
+    dashpot.target_velocity = (1 - alpha_f) * air + alpha_f * motion.velocity;
     springs.push_back(dashpot);
   }
 }

@@ -20,7 +20,8 @@ struct DragOptions {
 double projected_area(const Particle& particle, const Vec3& u);
 
 /// Appends one dashpot per particle: F = ½ ρ C_d A |u| (wind - velocity). Linear in the velocity at the end
-/// of the step, so the implicit step can never be driven past the wind's own speed, however light the leaf.
+/// of the step, so no leaf, however light, is driven past the wind's own speed (by a twentieth for one step,
+/// when let go into it).
 ///
 /// F is the physical force. [Wang17] Eq. 3 divides external forces by α_m; here the particles' masses already
 /// hold α_m, so the acceleration F/(α_m m) is scaled by 1/α_m by itself: no factor here. Gravity scales with

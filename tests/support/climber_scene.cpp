@@ -1,8 +1,8 @@
 #include "tests/support/climber_scene.h"
 
 #include <algorithm>
-#include <chrono>
 
+#include "mesher/base/stopwatch.h"
 #include "runtime/sim/collision/box_mesh.h"
 #include "runtime/wind/wind_forces.h"
 
@@ -10,14 +10,6 @@ namespace liana {
 namespace {
 
 const Vec3 kToSun(0.4, 0.8, 0.45);
-
-/// Adds the time that `work` takes to `seconds`.
-template <class Work>
-void timed(double& seconds, const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 }  // namespace
 
@@ -39,12 +31,12 @@ ClimberScene::ClimberScene(const ClimberParameters& parameters, uint64_t seed)
 
 void ClimberScene::step(const WindField* wind) {
   const double dt = plant.scheme.dt;
-  timed(seconds.growth, [&] { growth = climber.grow(plant, obstacles(), kToSun, growth_speed * dt); });
+  seconds.growth += timed([&] { growth = climber.grow(plant, obstacles(), kToSun, growth_speed * dt); });
   springs_.clear();
-  timed(seconds.wind, [&] {
+  seconds.wind += timed([&] {
     if (wind) add_wind(plant, *wind, time, {}, springs_);
   });
-  timed(seconds.physics, [&] {
+  seconds.physics += timed([&] {
     StepOptions options;
     options.dt = dt;
     const ContactStepReport report = stepper.step(plant, collision(), {}, springs_, options);
@@ -53,6 +45,7 @@ void ClimberScene::step(const WindField* wind) {
     sound = sound && report.step.finite && report.step.gap_held;
     redone += report.step.redone;
     passes += report.passes;
+    seconds.collision += report.collision_seconds;
   });
   out_of_range += growth.out_of_range;
   recalibrated += growth.recalibrated;

@@ -27,6 +27,7 @@ class ClimberScene {
 
   struct Seconds {
     double growth = 0, wind = 0, physics = 0;  ///< wall clock
+    double collision = 0;                      ///< the part of physics that looks for contacts
   };
 
   SdfObstacle wall;

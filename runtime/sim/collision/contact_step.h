@@ -12,10 +12,10 @@ struct ContactStepOptions {
 };
 
 struct ContactStepReport {
-  StepReport step;         ///< of the pass that was kept
-  ContactReport contacts;  ///< penetration is that of the state before the step
-  int passes = 0;          ///< how often the step was taken
-  int solves = 0;          ///< of all passes
+  StepReport step;               ///< of the pass that was kept
+  ContactReport contacts;        ///< penetration is that of the state before the step
+  int passes = 0;                ///< how often the step was taken
+  int solves = 0;                ///< of all passes
   double collision_seconds = 0;  ///< wall clock, spent looking for contacts
 };
 

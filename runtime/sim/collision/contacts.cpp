@@ -9,6 +9,8 @@
 namespace liana {
 namespace {
 
+constexpr double kImpact = 1e-3;  // m a step, beyond which an approach is an impact
+
 /// A plane that touches a solid where it is closest to a point.
 struct Nearest {
   double distance = std::numeric_limits<double>::infinity();  // m, of the point
@@ -37,15 +39,16 @@ Vec3 reach_towards(const Particle& particle, const Vec3& local_normal, double sc
 struct Probe {
   double along, width;
 };
-// A blade is widest in the middle and ends in a point; a stem is a cylinder.
-constexpr Probe kStemProbes[] = {{0, 1}, {1, 1}};
-constexpr Probe kBladeProbes[] = {{0, 1}, {1, 0}};
+// A blade is widest in the middle and ends in a point; a stem is a cylinder. The tail is tested of loose ones
+// only.
+constexpr Probe kStemProbes[] = {{0, 1}, {1, 1}, {-1, 1}};
+constexpr Probe kBladeProbes[] = {{0, 1}, {1, 0}, {-1, 0}};
 
 /// What a probe of a particle finds at one solid: where it touches first, and how far that is.
 struct Gap {
   size_t particle;
   uint64_t key;  // ascending in the order of visits
-  Vec3 point;    // m, particle's frame
+  Vec3 point;    // m, particle's frame: what a spring holds
   double gap;    // m, negative inside
   Vec3 normal;   // unit, away from the solid
 };
@@ -63,7 +66,8 @@ void for_each_gap(const Plant& plant, const CollisionScene& scene, double dt, si
         dt * (motion.velocity.norm() + particle.half_length * motion.angular_velocity.norm() +
               dt * motion.acceleration.norm() / 2);
     const double reach = std::max(particle.half_width, particle.half_thickness) + travel;
-    for (uint64_t p = 0; p < 2; ++p) {
+    const uint64_t probes = particle.joint.shear_stiffness.isZero(0) ? 3 : 2;
+    for (uint64_t p = 0; p < probes; ++p) {
       const Probe& probe = (blade ? kBladeProbes : kStemProbes)[p];
       const Vec3 on_axis = Vec3(0, probe.along * particle.half_length, 0);
       const Vec3 x = motion.position + to_world * on_axis;
@@ -73,8 +77,11 @@ void for_each_gap(const Plant& plant, const CollisionScene& scene, double dt, si
         const Vec3 arm = reach_towards(particle, to_world.transpose() * on_axis_found.normal, probe.width);
         // Beside an edge the solid is no half space: what counts is the distance of the point itself.
         const Nearest found = nearest_to(x + to_world * arm);
+        // A round stem is held at its axis: held at its skin, a point that turns with it, it would be rolled
+        // over by its own weight.
         if (found.distance <= reach)
-          visit(Gap{i, (uint64_t(i) * 2 + p) << 16 | solid, on_axis + arm, found.distance, found.normal});
+          visit(Gap{i, (uint64_t(i) * 4 + p) << 16 | solid, blade ? Vec3(on_axis + arm) : on_axis,
+                    found.distance, found.normal});
       };
       for (size_t s = 0; s < scene.solids.size(); ++s)
         look(s + 1, [&](const Vec3& at) { return nearest(*scene.solids[s], at, reach); });
@@ -113,7 +120,9 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, size_t pa
   const double approach = velocity.dot(n);
   const double k = std::max(options_.stiffness_ratio * plant.particles[particle].mass / (dt * dt),
                             options_.least_stiffness);
-  const double pressing = (1 - alpha_f) * k * std::max(0.0, -gap);  // N
+  const double coming = std::max(0.0, -approach) * dt / kImpact;
+  const double settling = dt * std::clamp(1.25 - coming / 4, 0.25, 1.0);  // τ
+  const double pressing = (1 - alpha_f) * k * std::max(0.0, -gap);        // N
   const Vec3 sliding = velocity - approach * n;
   const double friction = options_.friction * pressing / std::max(sliding.norm(), options_.creep_speed);
   const Mat3 normal = n * n.transpose();
@@ -125,7 +134,7 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, size_t pa
   spring.target = motion.position + arm + (1 - alpha_f) * way * n;
   spring.target_velocity = alpha_f * approach * n;
   spring.stiffness = k * normal;
-  spring.damping = k * dt * normal + friction * (Mat3::Identity() - normal);
+  spring.damping = k * settling * normal + friction * (Mat3::Identity() - normal);
   return spring;
 }
 

@@ -1,8 +1,8 @@
 // Contacts of a plant with solid obstacles and the ground, as springs to the world for the next time step.
 //
-// Every particle is looked at in its centre and its head (its tail is its parent's head), with the
-// cross-section's own reach towards the surface as radius. A contact is made when the point is inside, or
-// will be by the end of the step.
+// Every particle is looked at in its centre and its head (its tail is its parent's head, unless it is loose),
+// with the cross-section's own reach towards the surface as radius. A contact is made when the point is
+// inside, or will be by the end of the step.
 #pragma once
 
 #include <optional>

@@ -1,0 +1,161 @@
+#include <gtest/gtest.h>
+
+#include "mesher/base/error.h"
+#include "runtime/sim/collision/box_mesh.h"
+#include "runtime/sim/rod_section.h"
+#include "runtime/sim/time_step.h"
+#include "runtime/wind/sheltered_wind.h"
+#include "runtime/wind/steady_gust_wind.h"
+#include "runtime/wind/wind_forces.h"
+
+namespace liana {
+namespace {
+
+class EvenWind : public WindField {
+ public:
+  explicit EvenWind(const Vec3& velocity) : velocity_(velocity) {}
+  Vec3 velocity(const Vec3&, double) const override { return velocity_; }
+
+ private:
+  Vec3 velocity_;
+};
+
+/// A free blade of 5 × 4 cm, 0.3 mm, facing +Z.
+Plant loose_leaf(double mass) {
+  Plant plant;
+  plant.branches.resize(1);
+  plant.branches[0].kind = DomainKind::Leaf;
+  plant.branches[0].particles = {ParticleId(0)};
+  Particle leaf;
+  leaf.branch = BranchId(0);
+  leaf.half_length = 0.025, leaf.half_width = 0.02, leaf.half_thickness = 1.5e-4;
+  leaf.mass = mass;
+  leaf.inertia = rod_inertia(mass, 0.025, 0.02, 1.5e-4);
+  plant.particles = {leaf};
+  plant.motion.resize(1);
+  return plant;
+}
+
+Vec3 drag(const Plant& plant, const Vec3& wind) {
+  std::vector<WorldSpring> springs;
+  add_wind(plant, EvenWind(wind), 0, {}, springs);
+  return springs.empty() ? Vec3::Zero()
+                         : Vec3(springs[0].damping * (springs[0].target_velocity - plant.motion[0].velocity));
+}
+
+TEST(WindForces, ProjectedAreaIsThatOfTheEllipsoid) {
+  const Plant plant = loose_leaf(3e-4);
+  const Particle& leaf = plant.particles[0];
+  EXPECT_NEAR(projected_area(leaf, Vec3::UnitZ()), kPi * 0.025 * 0.02, 1e-12);
+  EXPECT_NEAR(projected_area(leaf, Vec3::UnitY()), kPi * 0.02 * 1.5e-4, 1e-12);
+}
+
+TEST(WindForces, DragIsQuadraticThenLinearOnceTheBladeFolds) {
+  const Plant plant = loose_leaf(3e-4);
+  const DragOptions options;
+  const double area = kPi * 0.025 * 0.02;
+  EXPECT_NEAR(drag(plant, {0, 0, 2}).z(), 1.2 / 2 * options.leaf_coefficient * area * 4, 1e-12);
+  EXPECT_NEAR(drag(plant, {0, 0, -2}).z(), -drag(plant, {0, 0, 2}).z(), 1e-15);
+  EXPECT_NEAR(drag(plant, {0, 0, 3}).z() / drag(plant, {0, 0, 1.5}).z(), 4, 1e-9);
+  EXPECT_NEAR(drag(plant, {0, 0, 16}).z() / drag(plant, {0, 0, 8}).z(), 2, 1e-9);
+}
+
+TEST(WindForces, MassScalingDividesTheAcceleration) {
+  // [Wang17] Eq. 3: α_m times the mass, 1/α_m times the acceleration by the same wind. A heavy blade, so that
+  // its own motion changes the drag by less than 0.1 % within the step.
+  double speed[2];
+  for (int i = 0; i < 2; ++i) {
+    Plant plant = loose_leaf(i == 0 ? 1.0 : 2.5);
+    std::vector<WorldSpring> springs;
+    add_wind(plant, EvenWind({0, 0, 2}), 0, {}, springs);
+    StepOptions options;
+    options.gravity = Vec3::Zero();
+    PlantStepper().step(plant, {}, springs, options);
+    speed[i] = plant.motion[0].velocity.z();
+  }
+  EXPECT_NEAR(speed[0] / speed[1], 2.5, 2.5e-3);
+}
+
+TEST(WindForces, TheLightestLeafNeverOvertakesTheWind) {
+  Plant plant = loose_leaf(1e-6);
+  PlantStepper stepper;
+  StepOptions options;
+  options.gravity = Vec3::Zero();
+  for (int i = 0; i < 100; ++i) {
+    std::vector<WorldSpring> springs;
+    add_wind(plant, EvenWind({0, 0, 10}), 0, {}, springs);
+    stepper.step(plant, {}, springs, options);
+    // Generalized-α carries α_m of the last acceleration on: a twentieth, once.
+    EXPECT_LT(plant.motion[0].velocity.z(), 10 * 1.06);
+    EXPECT_GT(plant.motion[0].velocity.z(), 0);
+  }
+  EXPECT_NEAR(plant.motion[0].velocity.z(), 10, 0.5);
+}
+
+TEST(SteadyGustWind, HasItsMeanAndItsIntensity) {
+  GustParameters parameters;
+  parameters.mean = {3, 0, 1};
+  parameters.intensity = 0.3;
+  const SteadyGustWind wind(parameters);
+  Vec3 sum = Vec3::Zero();
+  double squares = 0;
+  const Vec3 along = parameters.mean.normalized();
+  const int count = 40000;  // an hour in steps of 0.1 s: some hundred periods of the slowest gust
+  for (int i = 0; i < count; ++i) {
+    const Vec3 u = wind.velocity({0.3, 1, -2}, 0.1 * i);
+    sum += u;
+    squares += std::pow((u - parameters.mean).dot(along), 2);
+  }
+  EXPECT_LT((sum / count - parameters.mean).norm(), 0.02 * parameters.mean.norm());
+  // Frequencies are distinct, so their variances add; what is left of the cross terms is of the order of 1 /
+  // periods.
+  EXPECT_NEAR(std::sqrt(squares / count), 0.3 * parameters.mean.norm(), 0.05 * 0.3 * parameters.mean.norm());
+}
+
+TEST(SteadyGustWind, CarriesItsGustsAlong) {
+  const SteadyGustWind wind;
+  const Vec3 mean = GustParameters().mean, place(0.2, 1, 0.4);
+  for (double time : {0.0, 3.0, 11.0})
+    EXPECT_LT((wind.velocity(place, time) - wind.velocity(place + 2.5 * mean, time + 2.5)).norm(), 1e-9);
+}
+
+TEST(SteadyGustWind, IsSmoothAndDependsOnItsSeed) {
+  GustParameters other;
+  other.seed = 2;
+  const SteadyGustWind wind, again, different(other);
+  double change = 0, jump = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 a = wind.velocity({0, 1, 0}, 0.01 * i), b = wind.velocity({0, 1, 0}, 0.01 * i + 1e-6);
+    jump = std::max(jump, (a - b).norm());
+    change = std::max(change, (a - different.velocity({0, 1, 0}, 0.01 * i)).norm());
+    EXPECT_EQ(a, again.velocity({0, 1, 0}, 0.01 * i));
+  }
+  EXPECT_LT(jump, 1e-4) << "m/s within a microsecond";
+  EXPECT_GT(change, 0.1) << "m/s";
+}
+
+TEST(SteadyGustWind, RefusesNonsense) {
+  GustParameters parameters;
+  parameters.low_frequency = -1;
+  EXPECT_THROW(SteadyGustWind{parameters}, Error);
+  parameters = {};
+  parameters.mean.x() = std::nan("");
+  EXPECT_THROW(SteadyGustWind{parameters}, Error);
+}
+
+TEST(ShelteredWind, DiesDownAtAWallAndDoesNotBlowThroughIt) {
+  const EvenWind open({2, 0, -3});
+  const SdfObstacle wall(box_mesh({-2, -1, -0.2}, {2, 4, 0}));
+  const ShelteredWind wind(open, {&wall}, 0.0);
+  EXPECT_LT(wind.velocity({0, 2, 0}, 0).norm(), 1e-6);
+  const Vec3 near = wind.velocity({0, 2, 0.03}, 0);
+  EXPECT_GT(near.x(), 0.3);
+  EXPECT_LT(near.x(), 2);
+  EXPECT_LT(std::abs(near.z()), 0.2);
+  EXPECT_EQ(wind.velocity({0, 2, 1}, 0), Vec3(2, 0, -3)) << "far from it";
+  for (double d = 0.01; d < 0.29; d += 0.01)
+    EXPECT_GT(wind.velocity({0, 2, d + 0.01}, 0).norm(), wind.velocity({0, 2, d}, 0).norm());
+}
+
+}  // namespace
+}  // namespace liana
