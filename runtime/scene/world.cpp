@@ -86,6 +86,7 @@ void World::add_climber(const SceneClimber& entry, uint64_t seed) {
   inhabitant->plant.scheme.dt = scene_.time_step;
   ClimberParameters parameters;
   parameters.max_particles = entry.max_particles;
+  parameters.gravity = scene_.gravity;
   inhabitant->climber.emplace(parameters, law, entry.position, seed);
   inhabitant->growth_speed = entry.growth_speed;
   inhabitant->look = plant_look(law.species);
