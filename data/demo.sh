@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# The main job, end to end: data/demo.sh PROGRAM OUTPUT_FOLDER (called by ./run demo)
+# The main job, end to end: data/demo.sh PROGRAM OUTPUT_FOLDER [bakes] (called by ./run demo). With "bakes" it stops
+# when the bakes that data/scenes/wall.toml needs are there.
 set -euo pipefail
-liana=$1 out=$2
+liana=$1 out=$2 until=${3:-end}
 mkdir -p "$out"
 
 step() { printf '\n\033[1m%s\033[0m\n' "$*"; }
@@ -9,6 +10,7 @@ step() { printf '\n\033[1m%s\033[0m\n' "$*"; }
 step "1. Bake: what is this tree made of?"
 "$liana" bake data/plants/apple_tree.glb --species apple -o "$out/apple_tree.bake" --report "$out/apple_tree.json"
 "$liana" bake data/plants/ivy_sprig.glb --species ivy -o "$out/ivy.bake" >/dev/null
+[ "$until" = bakes ] && exit
 
 step "2. Verify: does it move as baked?"
 "$liana" verify "$out/apple_tree.bake" --json "$out/verify.json"
