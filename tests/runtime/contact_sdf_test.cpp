@@ -79,7 +79,7 @@ TEST(SdfObstacle, BeyondItsBandKeepsSignAndIsALowerBound) {
 }
 
 TEST(SdfObstacle, SignIsRightCloseToEdgesAndCorners) {
-  const SdfObstacle box(box_mesh(kLow, kHigh));
+  const SdfObstacle box(box_mesh(kLow, kHigh), {.voxel = 0.04});
   Random random(11, "edges");
   for (int i = 0; i < 3000; ++i) {
     Vec3 x(random.uniform() < 0.5 ? kLow.x() : kHigh.x(), random.uniform() < 0.5 ? kLow.y() : kHigh.y(),
@@ -110,13 +110,13 @@ TEST(SdfObstacle, MatchesTheSphereWithinItsFacets) {
 }
 
 TEST(SdfObstacle, GradientPointsOutAlongFlatFaces) {
-  const SdfObstacle box(box_mesh(kLow, kHigh));
+  const SdfObstacle box(box_mesh(kLow, kHigh), {.voxel = 0.04});
   for (double z : {0.095, 0.1, 0.105, 0.12})
     EXPECT_LT((box.sample({0.1, 0.5, z}).gradient - Vec3::UnitZ()).norm(), 1e-3);
 }
 
 TEST(SdfObstacle, ClosestPointIsExactFarAway) {
-  const SdfObstacle box(box_mesh(kLow, kHigh));
+  const SdfObstacle box(box_mesh(kLow, kHigh), {.voxel = 0.04});
   const SurfacePoint found = box.closest_point({30, 0.4, 0.05});
   EXPECT_LT((found.point - Vec3(0.7, 0.4, 0.05)).norm(), 1e-9);
   EXPECT_NEAR(found.distance, 29.3, 1e-9);
@@ -124,12 +124,12 @@ TEST(SdfObstacle, ClosestPointIsExactFarAway) {
 
 TEST(SdfObstacle, IsTheSameWithAnyNumberOfThreads) {
   const Mesh mesh = sphere_mesh(0.2, 12);
-  const SdfObstacle one(mesh, {.threads = 1}), three(mesh, {.threads = 3});
+  const SdfObstacle one(mesh, {.voxel = 0.02, .threads = 1}), three(mesh, {.voxel = 0.02, .threads = 3});
   for (const Vec3& x : points_around(2000, 0)) EXPECT_EQ(one.distance(x), three.distance(x));
 }
 
 TEST(SdfObstacle, ShadesWhatIsBehindIt) {
-  const SdfObstacle box(box_mesh(kLow, kHigh));
+  const SdfObstacle box(box_mesh(kLow, kHigh), {.voxel = 0.04});
   EXPECT_TRUE(box.shades({0, 0.5, -0.3}, Vec3::UnitZ()));
   EXPECT_FALSE(box.shades({0, 0.5, 0.3}, Vec3::UnitZ()));
 }
@@ -138,7 +138,7 @@ TEST(SdfObstacle, LeavesTheFloatingPointModeAlone) {
 #if defined(__SSE2__)
   // Bits 0-5 only note what happened; the rest are modes.
   const unsigned before = _mm_getcsr() & ~0x3fu;
-  const SdfObstacle box(box_mesh(kLow, kHigh), {.threads = 1});
+  const SdfObstacle box(box_mesh(kLow, kHigh), {.voxel = 0.04, .threads = 1});
   box.closest_point({1, 2, 3});
   box.shades({1, 2, 3}, Vec3::UnitX());
   EXPECT_EQ(_mm_getcsr() & ~0x3fu, before);
