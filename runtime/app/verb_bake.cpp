@@ -49,11 +49,13 @@ int bake(BakeArguments arguments) {
 
   const Stopwatch watch;
   const SpeciesFile species = read_law(arguments);
-  SegmentedPlant plant;
-  const double read_seconds = timed([&] { plant = read_plant(arguments.plant); });
   BakeResult result;
+  double read_seconds = 0;
   {
-    TerminalProgress progress;
+    TerminalProgress progress;  // from here on Ctrl-C is ours
+    SegmentedPlant plant;
+    read_seconds = timed([&] { plant = read_plant(arguments.plant); });
+    progress.throw_if_cancelled();
     result = bake_plant(plant, species.law, arguments.options, progress);
     progress.throw_if_cancelled();
   }
