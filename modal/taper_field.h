@@ -9,9 +9,9 @@
 
 namespace liana {
 
-/// Factor s_i on E and ρ for each tet: the law at ℓ_i / ℓ, ℓ_i the mean over the tet's corners of the geodesic
-/// distance from the root faces, ℓ the largest distance. Distances run along the boundary; a corner inside
-/// takes the mean of its neighbours. Throws Error{Input} when no face is held.
+/// Factor s_i on E and ρ for each tet: the law at ℓ_i / ℓ, ℓ_i the mean over the tet's corners of the
+/// geodesic distance from the root faces, ℓ the largest distance. Distances run along the boundary; a corner
+/// inside takes the mean of its neighbours. Throws Error{Input} when no face is held.
 std::vector<ElementScaling> tapered(const TetMesh& mesh, const TaperLaw& law);
 
 /// Σ s_i V_i / Σ V_i: what the taper makes of the domain's mass.
