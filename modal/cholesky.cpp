@@ -6,6 +6,9 @@
 
 // Of OpenBLAS, when that is the BLAS in use: workers are threads already, a second layer only costs.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+// Of GNU's OpenMP: what `#pragma omp teams thread_limit(n)` compiles to.
+extern "C" void GOMP_teams_reg(void (*)(void*), void*, unsigned teams, unsigned thread_limit, unsigned flags)
+    __attribute__((weak));
 
 namespace liana {
 namespace {
@@ -34,6 +37,14 @@ struct Workspace {
 cholmod_common* workspace() {
   thread_local Workspace w;
   return &w.common;
+}
+
+/// Calls `body`, in which OpenMP may not start threads: CHOLMOD asks for four at every supernode, and waking
+/// them costs more than a small supernode does.
+template <class Body>
+void on_this_thread(Body&& body) {
+  if (!GOMP_teams_reg) return body();
+  GOMP_teams_reg([](void* data) { (*static_cast<std::remove_reference_t<Body>*>(data))(); }, &body, 1, 1, 0);
 }
 
 /// A square pattern. stype: 1 for the upper triangle, -1 for the lower.
@@ -102,7 +113,7 @@ Cholesky::Cholesky(const FreeMatrix& matrix) : state_(std::make_unique<State>())
   common->supernodal = matrix.size() < kSupernodalFrom ? CHOLMOD_SIMPLICIAL : CHOLMOD_SUPERNODAL;
   state_->factor = matrix.whole_nodes ? analyze_nodes(matrix, a) : cholmod_analyze(&a, common);
   require(state_->factor, "CHOLMOD ran out of memory");
-  cholmod_factorize(&a, state_->factor, common);
+  on_this_thread([&] { cholmod_factorize(&a, state_->factor, common); });
   state_->positive_definite = common->status == CHOLMOD_OK && state_->factor->minor == state_->factor->n;
 }
 
@@ -120,8 +131,11 @@ void Cholesky::solve(Eigen::MatrixXd& b) const {
   rhs.x = b.data();
   rhs.xtype = CHOLMOD_REAL;
   rhs.dtype = CHOLMOD_DOUBLE;
-  const int solved = cholmod_solve2(CHOLMOD_A, state_->factor, &rhs, nullptr, &state_->solution, nullptr,
-                                    &state_->work_y, &state_->work_e, workspace());
+  int solved = 0;
+  on_this_thread([&] {
+    solved = cholmod_solve2(CHOLMOD_A, state_->factor, &rhs, nullptr, &state_->solution, nullptr,
+                            &state_->work_y, &state_->work_e, workspace());
+  });
   require(solved, "CHOLMOD cannot solve");
   b = Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(state_->solution->x), b.rows(), b.cols());
 }
