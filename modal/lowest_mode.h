@@ -7,8 +7,8 @@
 
 #include "mesher/base/elastic_material.h"
 #include "mesher/tets/tet_mesh.h"
+#include "modal/assembly.h"
 #include "modal/carried_mass.h"
-#include "modal/node_mesh.h"
 
 namespace liana {
 
@@ -41,7 +41,8 @@ struct Modes {
 
 /// Nodes are the tet mesh's vertices, then (T10) the mid-edge nodes of make_nodes(). All nodes of root_faces
 /// are held. Throws Error{Input} when no face is held, a part hangs on nothing, or the matrix is singular.
+/// scaling: factors on the material for each tet; empty if it is uniform.
 Modes lowest_modes(const TetMesh& mesh, const ElasticMaterial& material, std::span<const CarriedMass> carried,
-                   const ModeOptions& options = {});
+                   const ModeOptions& options = {}, std::span<const ElementScaling> scaling = {});
 
 }  // namespace liana

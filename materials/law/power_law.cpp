@@ -37,11 +37,6 @@ double stiffness_scaling(double mass_scaling, double frequency, double default_f
   return mass_scaling * ratio * ratio;
 }
 
-double taper_scaling(const TaperLaw& law, double fraction) {
-  const double t = std::pow(1 - fraction, law.epsilon3);
-  return (1 - t) * law.tip_scaling + t * law.root_scaling;
-}
-
 DomainMaterial evaluate(const GroupLaw& law, double length) {
   if (!(length > 0 && std::isfinite(length)))
     throw Error(Error::Kind::Input, fmt::format("a length of {} m has no material", length),
