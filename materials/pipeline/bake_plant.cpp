@@ -25,6 +25,7 @@ BakeResult bake_plant(const SegmentedPlant& plant, const SpeciesLaw& species, co
   result.seconds.modal = (1 - tets_share) * solving;
   result.seconds.laws = timed([&] { result.bake = stages.apply_laws(); });
 
+  result.baked_as = stages.baked_as();
   result.notes = stages.notes();
   result.seconds.total = whole.seconds();
   return result;

@@ -27,6 +27,8 @@ struct StageSeconds {
 
 struct BakeResult {
   Bake bake;  ///< species_hash is the caller's to fill: it names the file the law was read from
+  std::vector<DomainId>
+      baked_as;  ///< per domain of the plant: its id in the bake, invalid if it was left out
   StageSeconds seconds;
   std::vector<std::string> notes;  ///< what a user should know though nothing failed
 };

@@ -166,7 +166,8 @@ Bake Stages::apply_laws() {
   choose_frequencies();
   Bake bake;
   bake.plant = plant_.name, bake.plant_hash = plant_.source_hash, bake.law = species_;
-  std::vector<DomainId> new_id(pieces_.size());  // ids count the domains that stayed
+  std::vector<DomainId>& new_id = baked_as_;
+  new_id.assign(pieces_.size(), {});  // ids count the domains that stayed
   for (size_t index = 0; index < pieces_.size(); ++index) {
     const DomainId old_id(index);
     progress_.advance();

@@ -20,6 +20,7 @@ class Stages {
   void carry_descendants();  ///< masses by the law, summed from the tips down
   bool find_modes();         ///< false when a domain failed, so that what its ancestors carry has changed
   Bake apply_laws();
+  const std::vector<DomainId>& baked_as() const { return baked_as_; }  ///< after apply_laws
   std::vector<std::string> notes() const;
 
   /// Summed over the workers of find_modes, s.
@@ -53,6 +54,7 @@ class Stages {
   const BakeOptions& options_;
   Progress& progress_;
   std::vector<Piece> pieces_;
+  std::vector<DomainId> baked_as_;
   std::vector<std::string> groups_;  ///< of the species, per domain
   std::vector<std::string> model_notes_;
   double tet_seconds_ = 0, mode_seconds_ = 0;

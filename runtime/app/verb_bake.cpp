@@ -9,6 +9,8 @@
 #include "materials/law/species_file.h"
 #include "materials/pipeline/bake_plant.h"
 #include "materials/pipeline/bake_report.h"
+#include "materials/pipeline/html_report.h"
+#include "materials/pipeline/model_comparison.h"
 #include "mesher/base/files.h"
 #include "mesher/base/hash.h"
 #include "mesher/io/plant_file.h"
@@ -23,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct BakeArguments {
-  fs::path plant, output, report;
+  fs::path plant, output, report, html, models;
   std::string species, model;
   std::vector<std::string> overrides;
   BakeOptions options;
@@ -50,15 +52,16 @@ void print_seconds(const StageSeconds& s) {
 int bake(BakeArguments arguments) {
   if (arguments.output.empty()) arguments.output = arguments.plant.filename().replace_extension(".bake");
   require_writable_folder(arguments.output);
-  if (!arguments.report.empty()) require_writable_folder(arguments.report);
+  for (const fs::path& extra : {arguments.report, arguments.html, arguments.models})
+    if (!extra.empty()) require_writable_folder(extra);
 
   const Stopwatch watch;
   const SpeciesFile species = read_law(arguments);
+  SegmentedPlant plant;
   BakeResult result;
   double read_seconds = 0;
   {
     TerminalProgress progress;  // from here on Ctrl-C is ours
-    SegmentedPlant plant;
     read_seconds = timed([&] { plant = read_plant(arguments.plant); });
     progress.throw_if_cancelled();
     result = bake_plant(plant, species.law, arguments.options, progress);
@@ -69,6 +72,9 @@ int bake(BakeArguments arguments) {
   result.seconds.total = watch.seconds();
   write_bake(result.bake, arguments.output);
   if (!arguments.report.empty()) write_file(arguments.report, bake_report(result));
+  if (!arguments.html.empty()) write_file(arguments.html, html_report(plant, result));
+  if (!arguments.models.empty())
+    write_file(arguments.models, comparison_csv(result.bake, compare_models(result.bake)));
 
   fmt::print("{} as {}: {} domains -> {}\n\n{}\n", arguments.plant.string(), species.law.species,
              result.bake.domains.size(), arguments.output.string(), bake_table(result.bake));
@@ -92,6 +98,10 @@ void add_bake_verb(CLI::App& app, int& exit_code) {
       ->option_text("NAME");
   verb->add_option("-o,--output", arguments->output, "The bake to write [the plant's name with .bake, here]");
   verb->add_option("--report", arguments->report, "Also write what was found as JSON");
+  verb->add_option("--html", arguments->html, "Also write it as a page for a browser: 3-D view, curves, table")
+      ->option_text("FILE");
+  verb->add_option("--compare-models", arguments->models, "Also write what each material model would give, as CSV")
+      ->option_text("FILE");
   verb->add_option("--set", arguments->overrides,
                    "Change a number of the species, as level0.reference_frequency=1.2; repeatable")
       ->allow_extra_args(false)
