@@ -7,6 +7,7 @@
 
 #include "materials/law/damping.h"
 #include "materials/law/law_numbers.h"
+#include "materials/law/material_model.h"
 #include "materials/law/power_law.h"
 #include "materials/pipeline/stations.h"
 #include "mesher/base/parallel.h"
@@ -24,7 +25,8 @@ Stages::Stages(const SegmentedPlant& plant, const SpeciesLaw& species, const Bak
     throw Error(Error::Kind::Input, plant.name + ": there is no branch or leaf in it",
                 "every domain is one mesh node");
   check(species, "species '" + species.species + "'");
-  for (const Domain& domain : plant.domains) species.group(domain.group);  // throws for a group without a law
+  for (const Domain& domain : plant.domains)  // throws for a domain without a law
+    groups_.push_back(species.group_of(domain.name, domain.kind, domain.level, domain.group));
 }
 
 std::vector<DomainId> Stages::domains_in() const {
@@ -60,7 +62,7 @@ void Stages::make_surfaces() {
     Piece& piece = pieces_[index];
     try {
       piece.solid = make_solid(plant_, DomainId(index));
-      piece.material = evaluate(species_.group(plant_.domains[index].group), piece.solid.length);
+      piece.material = evaluate(species_.group(groups_[index]), piece.solid.length);
     } catch (const Error& error) {
       if (error.kind != Error::Kind::Input) throw;
       piece.failure = error.what();
@@ -125,7 +127,7 @@ BakedDomain Stages::baked(DomainId id) const {
           .parent = parent_of(id),
           .kind = domain.kind,
           .level = domain.level,
-          .group = domain.group,
+          .group = groups_[id.index()],
           .length = piece.solid.length,
           .mass = own_mass(piece),
           .tets = piece.modes.tets,
@@ -142,8 +144,26 @@ BakedDomain Stages::baked(DomainId id) const {
           .stiffness_ratio = ratio * ratio};
 }
 
-Bake Stages::apply_laws() const {
+void Stages::choose_frequencies() {
+  if (species_.model.model == MaterialModel::PowerLaw) return;
+  const std::vector<DomainId> domains = domains_in();
+  std::vector<ModelledDomain> modelled;
+  for (const DomainId id : domains) {
+    const Domain& domain = plant_.domains[id.index()];
+    const Piece& piece = pieces_[id.index()];
+    modelled.push_back({groups_[id.index()], domain.kind, domain.level, piece.solid.length,
+                        piece.modes.frequencies.front()});
+  }
+  ModelFrequencies chosen = model_frequencies(species_, modelled);
+  model_notes_ = std::move(chosen.notes);
+  for (size_t i = 0; i < domains.size(); ++i)
+    pieces_[domains[i].index()].material =
+        evaluate_at(species_.group(modelled[i].group), modelled[i].length, chosen.frequencies[i]);
+}
+
+Bake Stages::apply_laws() {
   progress_.begin("laws", pieces_.size());
+  choose_frequencies();
   Bake bake;
   bake.plant = plant_.name, bake.plant_hash = plant_.source_hash, bake.law = species_;
   std::vector<DomainId> new_id(pieces_.size());  // ids count the domains that stayed
@@ -174,9 +194,8 @@ std::string Stages::describe_failure(DomainId id) const {
 }
 
 std::vector<std::string> Stages::notes() const {
-  std::set<std::string> used;
-  for (const Domain& domain : plant_.domains) used.insert(domain.group);
-  std::vector<std::string> notes;
+  const std::set<std::string> used(groups_.begin(), groups_.end());
+  std::vector<std::string> notes = model_notes_;
   for (const std::string& group : used) {
     const DampingLaw& damping = species_.group(group).damping;
     if (!species_.groups.contains(group))

@@ -19,7 +19,7 @@ class Stages {
   void make_surfaces();
   void carry_descendants();  ///< masses by the law, summed from the tips down
   bool find_modes();         ///< false when a domain failed, so that what its ancestors carry has changed
-  Bake apply_laws() const;
+  Bake apply_laws();
   std::vector<std::string> notes() const;
 
   /// Summed over the workers of find_modes, s.
@@ -40,6 +40,7 @@ class Stages {
   /// The nearest ancestor still in; invalid when there is none.
   DomainId parent_of(DomainId domain) const;
   double own_mass(const Piece& piece) const;
+  void choose_frequencies();  ///< by another model than the power law
   bool is_in(DomainId domain) const { return pieces_[domain.index()].failure.empty(); }
   const std::string& name_of(DomainId domain) const { return plant_.domains[domain.index()].name; }
   std::vector<DomainId> domains_in() const;
@@ -52,6 +53,8 @@ class Stages {
   const BakeOptions& options_;
   Progress& progress_;
   std::vector<Piece> pieces_;
+  std::vector<std::string> groups_;  ///< of the species, per domain
+  std::vector<std::string> model_notes_;
   double tet_seconds_ = 0, mode_seconds_ = 0;
 };
 

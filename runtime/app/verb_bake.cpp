@@ -5,6 +5,7 @@
 
 #include "materials/bake/bake_file.h"
 #include "materials/law/law_override.h"
+#include "materials/law/material_model.h"
 #include "materials/law/species_file.h"
 #include "materials/pipeline/bake_plant.h"
 #include "materials/pipeline/bake_report.h"
@@ -23,7 +24,7 @@ namespace fs = std::filesystem;
 
 struct BakeArguments {
   fs::path plant, output, report;
-  std::string species;
+  std::string species, model;
   std::vector<std::string> overrides;
   BakeOptions options;
 };
@@ -33,6 +34,10 @@ SpeciesFile read_law(const BakeArguments& arguments) {
   for (const std::string& assignment : arguments.overrides) {
     set_number(species.law, assignment);
     species.hash = hash_bytes(assignment.data(), assignment.size(), species.hash);
+  }
+  if (!arguments.model.empty()) {
+    species.law.model.model = model_named(arguments.model);
+    species.hash = hash_bytes(arguments.model.data(), arguments.model.size(), species.hash);
   }
   return species;
 }
@@ -91,6 +96,13 @@ void add_bake_verb(CLI::App& app, int& exit_code) {
                    "Change a number of the species, as level0.reference_frequency=1.2; repeatable")
       ->allow_extra_args(false)
       ->option_text("KEY=VALUE");
+  verb->add_option("--model", arguments->model,
+                   "What gives frequencies: power (law), constant, depth or median [the species', power]")
+      ->check([](const std::string& name) {
+        const std::string problem = model_name_problem(name);
+        return problem.empty() ? problem : "--model " + problem;
+      })
+      ->option_text("NAME");
   verb->add_option("--element", arguments->options.element,
                    "T10 (accurate) or T4 (far too stiff: for comparison)")
       ->transform(CLI::CheckedTransformer(
