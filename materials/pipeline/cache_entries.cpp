@@ -130,13 +130,15 @@ std::variant<CachedCopy, SolidDomain> decode_geometry(std::string_view bytes) {
 
 uint64_t modes_key(uint64_t geometry_key, const Solid& solid, const ElasticMaterial& material,
                    const DomainModesOptions& options) {
-  const auto& [surface, is_root, carried] = solid;
+  const auto& [surface, is_root, carried, taper] = solid;
+  const auto& [root_scaling, tip_scaling, epsilon3] = taper;
   const auto& [youngs_modulus, density, poisson_ratio] = material;
   const auto& [mode_options, tets, share, threads] = options;
   const auto& [element, modes] = mode_options;
   const auto& [radius_edge_ratio, min_dihedral] = tets;
   KeyHash key(geometry_key);
   key.add(poisson_ratio, element, modes, radius_edge_ratio, min_dihedral, share);
+  if (!taper.uniform()) key.add(root_scaling, tip_scaling, epsilon3);
   for (const auto& [position, mass] : carried)
     key.add(position.x(), position.y(), position.z(), rounded(mass / density));
   return key.value();
