@@ -58,14 +58,29 @@ cholmod_sparse view(const std::vector<int>& start, const std::vector<int>& row, 
   a.itype = CHOLMOD_INT;
   a.xtype = CHOLMOD_PATTERN;
   a.dtype = CHOLMOD_DOUBLE;
-  a.sorted = a.packed = 1;
+  a.packed = 1;
   return a;
+}
+
+/// Each node as three dof; entries below the diagonal are left in, CHOLMOD skips them.
+Pattern three_by_three(const Pattern& nodes) {
+  Pattern dof;
+  dof.start.reserve(3 * nodes.size() + 1), dof.row.resize(9 * nodes.row.size());
+  dof.start.push_back(0);
+  int* row = dof.row.data();
+  for (int q = 0; q < nodes.size(); ++q)
+    for (int k = 0; k < 3; ++k) {
+      for (int e = nodes.start[q]; e < nodes.start[q + 1]; ++e, row += 3)
+        row[0] = 3 * nodes.row[e], row[1] = row[0] + 1, row[2] = row[0] + 2;
+      dof.start.push_back(static_cast<int>(row - dof.row.data()));
+    }
+  return dof;
 }
 
 /// What cholmod_analyze() finds, from the graph of nodes: a ninth of the entries. Node p's parent in the
 /// elimination tree and its column's length c become 3p → 3p + 1 → 3p + 2 → 3 parent, of 3c, 3c − 1 and 3c
 /// − 2.
-cholmod_factor* analyze_nodes(const FreeMatrix& matrix, cholmod_sparse& scalar) {
+cholmod_factor* analyze_nodes(const FreeMatrix& matrix) {
   cholmod_common* common = workspace();
   cholmod_sparse upper = view(matrix.upper_nodes.start, matrix.upper_nodes.row, 1);
   cholmod_sparse lower = view(matrix.lower_nodes.start, matrix.lower_nodes.row, -1);
@@ -84,9 +99,12 @@ cholmod_factor* analyze_nodes(const FreeMatrix& matrix, cholmod_sparse& scalar) 
       static_cast<int*>(factor->ColCount)[3 * p + k] = 3 * count[p] - k;
       scalar_parent[3 * p + k] = k < 2 ? 3 * p + k + 1 : parent[p] < 0 ? -1 : 3 * parent[p];
     }
-  if (common->supernodal == CHOLMOD_SUPERNODAL)
+  if (common->supernodal == CHOLMOD_SUPERNODAL) {
+    const Pattern upper_dof = three_by_three(matrix.upper_nodes);
+    cholmod_sparse scalar = view(upper_dof.start, upper_dof.row, 1);
     require(cholmod_super_symbolic(&scalar, nullptr, scalar_parent.data(), factor, common),
             "CHOLMOD cannot find supernodes");
+  }
   return factor;
 }
 
@@ -107,11 +125,11 @@ struct Cholesky::State {
 
 Cholesky::Cholesky(const FreeMatrix& matrix) : state_(std::make_unique<State>()) {
   cholmod_common* common = workspace();
-  cholmod_sparse a = view(matrix.start, matrix.row, 1);
+  cholmod_sparse a = view(matrix.start, matrix.row, -1);
   a.x = const_cast<double*>(matrix.value.data());
   a.xtype = CHOLMOD_REAL;
   common->supernodal = matrix.size() < kSupernodalFrom ? CHOLMOD_SIMPLICIAL : CHOLMOD_SUPERNODAL;
-  state_->factor = matrix.whole_nodes ? analyze_nodes(matrix, a) : cholmod_analyze(&a, common);
+  state_->factor = matrix.whole_nodes ? analyze_nodes(matrix) : cholmod_analyze(&a, common);
   require(state_->factor, "CHOLMOD ran out of memory");
   on_this_thread([&] { cholmod_factorize(&a, state_->factor, common); });
   state_->positive_definite = common->status == CHOLMOD_OK && state_->factor->minor == state_->factor->n;

@@ -81,7 +81,9 @@ DomainModes solve(const Solid& solid, const ElasticMaterial& material, const Dom
   return result;
 }
 
-DomainModes copy_of(const DomainModes& original, const Similarity& similarity) {
+}  // namespace
+
+DomainModes moved(const DomainModes& original, const Similarity& similarity) {
   DomainModes copy = original;
   for (double& f : copy.frequencies) f /= similarity.scale;
   for (double& f : copy.sway.frequencies) f /= similarity.scale;
@@ -89,8 +91,6 @@ DomainModes copy_of(const DomainModes& original, const Similarity& similarity) {
   for (Vec3& d : copy.sway.directions) d = similarity.rotation * d;
   return copy;
 }
-
-}  // namespace
 
 AllModes solve_domains(const std::vector<Solid>& solids, const ElasticMaterial& material,
                        const DomainModesOptions& options, Progress& progress) {
@@ -120,7 +120,7 @@ AllModes solve_domains(const std::vector<Solid>& solids, const ElasticMaterial& 
   });
   for (size_t i = 0; i < solids.size(); ++i) {
     const size_t source = sources[i].solid;
-    if (source != i) all.domains[i] = copy_of(all.domains[source], sources[i].similarity);
+    if (source != i) all.domains[i] = moved(all.domains[source], sources[i].similarity);
     all.domains[i].solved_as = source;
   }
   for (const Seconds& s : seconds) all.tet_seconds += s.tets, all.mode_seconds += s.modes;

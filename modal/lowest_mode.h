@@ -32,11 +32,11 @@ struct Modes {
   Sway sway;
   uint32_t dof = 0;
   int iterations = 0;
-  double residual = 0;  ///< max over modes of |K x − λ M x| / |K x|
+  double residual = 0;  ///< of EigenResult
   /// Max over modes of how far the assembled K's eigenvalue lies from the shape's strain energy, relative:
   /// what rounding has done to the shape of a very thin solid. The frequency's own error is about its square.
   double rounding = 0;
-  bool converged = false;  ///< residual below 1e-5, rounding below 0.1
+  bool converged = false;  ///< residual below 3e-5, rounding below 0.1
 };
 
 /// Nodes are the tet mesh's vertices, then (T10) the mid-edge nodes of make_nodes(). All nodes of root_faces

@@ -12,11 +12,14 @@
 
 namespace liana {
 
+class BakeCache;
+
 struct BakeOptions {
   Element element = Element::T10;
   TetOptions tets;
   unsigned threads = 0;  ///< 0: one per core
   bool strict = false;   ///< throw at the first domain that cannot be made solid instead of leaving it out
+  BakeCache* cache = nullptr;  ///< solids and modes are looked up in it and added; the caller saves it
 };
 
 /// Wall clock, s. Tets and modes are made in one go; their time is split as the workers spent it.

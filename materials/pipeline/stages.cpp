@@ -10,7 +10,6 @@
 #include "materials/law/material_model.h"
 #include "materials/law/power_law.h"
 #include "materials/pipeline/stations.h"
-#include "mesher/base/parallel.h"
 
 namespace liana {
 
@@ -55,64 +54,21 @@ DomainId Stages::parent_of(DomainId domain) const {
   return parent;
 }
 
-void Stages::make_surfaces() {
-  progress_.begin("surface", pieces_.size());
-  parallel_for(pieces_.size(), options_.threads, [&](size_t index, unsigned) {
-    progress_.throw_if_cancelled();
-    Piece& piece = pieces_[index];
-    try {
-      piece.solid = make_solid(plant_, DomainId(index));
-      piece.material = evaluate(species_.group(groups_[index]), piece.solid.length);
-    } catch (const Error& error) {
-      if (error.kind != Error::Kind::Input) throw;
-      piece.failure = error.what();
-    }
-    progress_.advance();
-  });
-  refuse_failures();
-}
-
 double Stages::own_mass(const Piece& piece) const {
   return piece.material.mass_scaling * species_.default_material.density * piece.solid.volume;
 }
 
 void Stages::carry_descendants() {
-  for (Piece& piece : pieces_) piece.carried.clear(), piece.subtree_mass = own_mass(piece);
+  for (Piece& piece : pieces_)
+    piece.carried.clear(), piece.subtree_volume = piece.material.mass_scaling * piece.solid.volume;
   for (size_t index = pieces_.size(); index-- > 0;) {  // children before parents
     const DomainId id(index), parent = parent_of(id);
     if (!is_in(id) || !parent.valid()) continue;
     Piece &piece = pieces_[index], &below = pieces_[parent.index()];
-    below.subtree_mass += piece.subtree_mass;
-    below.carried.push_back({piece.solid.root, piece.subtree_mass / below.material.mass_scaling});
+    below.subtree_volume += piece.subtree_volume;
+    below.carried.push_back({piece.solid.root, species_.default_material.density * piece.subtree_volume /
+                                                   below.material.mass_scaling});
   }
-}
-
-bool Stages::find_modes() {
-  const std::vector<DomainId> domains = domains_in();
-  std::vector<Solid> solids;
-  for (const DomainId id : domains) {
-    const Piece& piece = pieces_[id.index()];
-    solids.push_back({&piece.solid.surface, piece.solid.is_root, piece.carried});
-  }
-  DomainModesOptions mode_options;
-  mode_options.modes.element = options_.element;
-  mode_options.tets = options_.tets;
-  mode_options.threads = options_.threads;
-  AllModes all = solve_domains(solids, species_.default_material, mode_options, progress_);
-  tet_seconds_ += all.tet_seconds, mode_seconds_ += all.mode_seconds;
-
-  for (size_t i = 0; i < domains.size(); ++i) {
-    Piece& piece = pieces_[domains[i].index()];
-    piece.modes = std::move(all.domains[i]);
-    piece.modes.solved_as = domains[piece.modes.solved_as].index();
-    if (!piece.modes.failure.empty())
-      piece.failure = name_of(domains[i]) + ": " + piece.modes.failure;
-    else if (!piece.modes.converged)
-      piece.failure = fmt::format("{}: its lowest mode did not converge (residual {:.1e})",
-                                  name_of(domains[i]), piece.modes.residual);
-  }
-  refuse_failures();
-  return domains_in().size() == domains.size();
 }
 
 BakedDomain Stages::baked(DomainId id) const {

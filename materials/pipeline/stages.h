@@ -2,9 +2,11 @@
 #pragma once
 
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "materials/pipeline/bake_plant.h"
+#include "materials/pipeline/instances.h"
 #include "mesher/surface/solid_domain.h"
 #include "modal/domain_modes.h"
 
@@ -16,7 +18,7 @@ class Stages {
   Stages(const SegmentedPlant& plant, const SpeciesLaw& species, const BakeOptions& options,
          Progress& progress);
 
-  void make_surfaces();
+  void make_surfaces();      ///< once for each shape; copies are moved
   void carry_descendants();  ///< masses by the law, summed from the tips down
   bool find_modes();         ///< false when a domain failed, so that what its ancestors carry has changed
   Bake apply_laws();
@@ -30,13 +32,32 @@ class Stages {
  private:
   /// A domain on its way through the stages.
   struct Piece {
-    SolidDomain solid;
+    SolidDomain solid;          ///< without surface if it came from the cache and was not needed
+    Instance instance;          ///< of an earlier piece, or of itself
+    uint64_t geometry_key = 0;  ///< in the cache
+    bool from_cache = false;    ///< the solid
     DomainMaterial material{};
-    double subtree_mass = 0;           ///< kg: its own and all its descendants', as the law scales them
+    double subtree_volume = 0;  ///< m³, Σ α_m V: its own and all its descendants', as the law scales them
     std::vector<CarriedMass> carried;  ///< as the domain's default solve carries it: divided by its α_m
     DomainModes modes;                 ///< solved_as: index of a piece
     std::string failure;               ///< why it is left out; empty while it is in
   };
+
+  bool is_copy(size_t index) const { return pieces_[index].instance.source != index; }
+  void recall_surfaces();
+  void recall_copies();
+  void make_surface(size_t index);
+  void copy_surface(size_t index);
+  void ensure_surface(size_t index);
+  void remember_surfaces();
+  /// Index of the domain whose modes it takes because it is its copy and neither carries anything; else its
+  /// own.
+  size_t bare_source(size_t index) const;
+  DomainModesOptions mode_options() const;
+  /// The modes in the cache; false when they have to be found.
+  bool recall_modes(size_t index, const std::unordered_map<uint64_t, size_t>& by_key,
+                    const std::vector<uint64_t>& keys);
+  void judge_modes(size_t index);
 
   /// The nearest ancestor still in; invalid when there is none.
   DomainId parent_of(DomainId domain) const;

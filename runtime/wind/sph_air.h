@@ -69,6 +69,8 @@ class SphAir {
   /// relative to the domain's low corner.
   template <class Visit>
   void for_ranges(const Eigen::Vector3f& low, const Eigen::Vector3f& high, const Visit& visit) const;
+  const SphPasses& passes() const { return passes_; }
+  WorkerTeam& team() { return team_; }  ///< between steps
   const AirState* states() const { return state_.data(); }
   const float* xs() const { return x_.data(); }  ///< of all particles, m from the low corner; padded by 8
   const float* ys() const { return y_.data(); }

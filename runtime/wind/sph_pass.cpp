@@ -30,6 +30,15 @@ inline uint32_t append_positive(const Float8& left, const Float8& x, const Float
   return n;
 }
 
+inline uint32_t append_positive(const Float8& left, const Int8& number, int32_t* index, float* depth,
+                                uint32_t used) {
+  for (int j = 0; j < 8; ++j) {
+    index[used] = number[j], depth[used] = left[j];
+    used += left[j] > 0;
+  }
+  return used;
+}
+
 inline Float8 square_root(const Float8& a) {
   Float8 root;
   for (int j = 0; j < 8; ++j) root[j] = __builtin_sqrtf(a[j]);
@@ -79,6 +88,17 @@ __attribute__((target("avx2"), always_inline)) inline uint32_t append_positive(F
   return n + kCompression.count[mask];
 }
 
+__attribute__((target("avx2"), always_inline)) inline uint32_t append_positive(Float8 left, Int8 number,
+                                                                               int32_t* index, float* depth,
+                                                                               uint32_t used) {
+  const int mask = _mm256_movemask_ps(_mm256_cmp_ps(left, _mm256_setzero_ps(), _CMP_GT_OQ));
+  const __m256i places = _mm256_load_si256(reinterpret_cast<const __m256i*>(kCompression.places[mask]));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(index + used),
+                      _mm256_permutevar8x32_epi32(reinterpret_cast<__m256i>(number), places));
+  _mm256_storeu_ps(depth + used, _mm256_permutevar8x32_ps(left, places));
+  return used + kCompression.count[mask];
+}
+
 __attribute__((target("avx2"), always_inline)) inline Float8 square_root(Float8 a) { return _mm256_sqrt_ps(a); }
 
 }  // namespace
@@ -104,9 +124,9 @@ __attribute__((target("avx2"), always_inline)) inline Float8 square_root(Float8 
 namespace liana {
 
 const SphPasses& sph_passes(bool portable) {
-  static constexpr SphPasses plain = {portable::gather, portable::density, portable::force, "portable"};
+  static constexpr SphPasses plain = {portable::gather, portable::density, portable::force, portable::ellipsoid, "portable"};
 #if defined(__x86_64__)
-  static constexpr SphPasses wide = {avx2::gather, avx2::density, avx2::force, "AVX2"};
+  static constexpr SphPasses wide = {avx2::gather, avx2::density, avx2::force, avx2::ellipsoid, "AVX2"};
   if (!portable && __builtin_cpu_supports("avx2")) return wide;
 #endif
   return plain;

@@ -48,10 +48,17 @@ using ForcePass = void (*)(uint32_t begin, uint32_t end, const AirConstants& k, 
                            const uint32_t* list_begin, const uint32_t* list_end, const int32_t* list,
                            float* acceleration);
 
+/// Appends those of particles [begin, end) that lie in the ellipsoid |η| < 1, η = G (x − centre), with 1 − |η|, from
+/// `used` on. G by rows, 1/m. Returns the new `used`. Both lists need room for end - begin + 8 more.
+using EllipsoidPass = uint32_t (*)(uint32_t begin, uint32_t end, const float* x, const float* y, const float* z,
+                                   const float (&centre)[3], const float (&G)[9], int32_t* index, float* depth,
+                                   uint32_t used);
+
 struct SphPasses {
   GatherPass gather;
   DensityPass density;
   ForcePass force;
+  EllipsoidPass ellipsoid;
   const char* name;
 };
 

@@ -125,6 +125,24 @@ LIANA_TARGET static void force(uint32_t begin, uint32_t end, const AirConstants&
   }
 }
 
+LIANA_TARGET static uint32_t ellipsoid(uint32_t begin, uint32_t end, const float* x, const float* y, const float* z,
+                                       const float (&centre)[3], const float (&G)[9], int32_t* index, float* depth,
+                                       uint32_t used) {
+  const Int8 lane = {0, 1, 2, 3, 4, 5, 6, 7};
+  const Float8 x0 = spread(centre[0]), y0 = spread(centre[1]), z0 = spread(centre[2]), one = spread(1);
+  for (uint32_t i = begin; i < end; i += 8) {
+    const Float8 dx = load(x + i) - x0, dy = load(y + i) - y0, dz = load(z + i) - z0;
+    const Float8 u = dx * G[0] + dy * G[1] + dz * G[2];
+    const Float8 v = dx * G[3] + dy * G[4] + dz * G[5];
+    const Float8 w = dx * G[6] + dy * G[7] + dz * G[8];
+    const Float8 inside = one - square_root(u * u + v * v + w * w);
+    const Int8 number = lane + static_cast<int32_t>(i);
+    const Int8 own = number < static_cast<int32_t>(end);
+    used = append_positive(own ? inside : Float8{}, number, index, depth, used);
+  }
+  return used;
+}
+
 #undef LIANA_INLINE
 
 }  // namespace liana::LIANA_ISA
