@@ -14,6 +14,7 @@
 #include "mesher/base/files.h"
 #include "mesher/base/hash.h"
 #include "mesher/io/plant_file.h"
+#include "mesher/surface/merge_domains.h"
 #include "runtime/app/bake_table.h"
 #include "runtime/app/terminal_progress.h"
 #include "runtime/app/verbs.h"
@@ -29,6 +30,7 @@ struct BakeArguments {
   std::string species, model;
   std::vector<std::string> overrides;
   BakeOptions options;
+  int merge_below = -1;  ///< level; -1: keep all domains
 };
 
 SpeciesFile read_law(const BakeArguments& arguments) {
@@ -64,7 +66,13 @@ int bake(BakeArguments arguments) {
     TerminalProgress progress;  // from here on Ctrl-C is ours
     read_seconds = timed([&] { plant = read_plant(arguments.plant); });
     progress.throw_if_cancelled();
+    std::vector<std::string> merged;
+    if (arguments.merge_below >= 0) {
+      MergedPlant coarse = merge_below(plant, arguments.merge_below, arguments.options.threads, progress);
+      plant = std::move(coarse.plant), merged = std::move(coarse.notes);
+    }
     result = bake_plant(plant, species.law, arguments.options, progress);
+    result.notes.insert(result.notes.begin(), merged.begin(), merged.end());
     progress.throw_if_cancelled();
   }
   result.bake.species_hash = species.hash;
@@ -113,6 +121,10 @@ void add_bake_verb(CLI::App& app, int& exit_code) {
         return problem.empty() ? problem : "--model " + problem;
       })
       ->option_text("NAME");
+  verb->add_option("--merge-below", arguments->merge_below,
+                   "Make a branch of this level and all branches on it one domain (0: the trunk)")
+      ->check(CLI::Range(0, 1000))
+      ->option_text("LEVEL");
   verb->add_option("--element", arguments->options.element,
                    "T10 (accurate) or T4 (far too stiff: for comparison)")
       ->transform(CLI::CheckedTransformer(

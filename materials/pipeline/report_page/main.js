@@ -298,9 +298,9 @@ function start() {
   $("colour-by").addEventListener("change", () => colourBy($("colour-by").value));
   $("histogram-of").addEventListener("change", () => view.histogram.show(histogramSpec($("histogram-of").value)));
   $("models-csv").addEventListener("click", () => download("models.csv", modelsCsv()));
-  const wanted = new URLSearchParams(location.search).get("colour");
-  if (wanted in QUANTITIES) $("colour-by").value = wanted;
-  colourBy($("colour-by").value);
+  const wanted = new URLSearchParams(location.search).get("colour"), first = wanted in QUANTITIES ? wanted : "nu";
+  $("colour-by").value = first;
+  colourBy(first);
   makeCharts();
   fillRoutes();
   makeTable();
