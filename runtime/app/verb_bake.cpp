@@ -2,10 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 
 #include "materials/bake/bake_file.h"
 #include "materials/law/law_override.h"
 #include "materials/law/species_file.h"
+#include "materials/pipeline/bake_cache.h"
 #include "materials/pipeline/bake_plant.h"
 #include "materials/pipeline/bake_report.h"
 #include "mesher/base/files.h"
@@ -26,6 +28,8 @@ struct BakeArguments {
   std::string species;
   std::vector<std::string> overrides;
   BakeOptions options;
+  fs::path cache_folder = default_cache_folder();
+  bool no_cache = false;
 };
 
 SpeciesFile read_law(const BakeArguments& arguments) {
@@ -37,9 +41,26 @@ SpeciesFile read_law(const BakeArguments& arguments) {
   return species;
 }
 
+/// Each stage's seconds and share of the total.
 void print_seconds(const StageSeconds& s) {
-  fmt::print("seconds: read {:.2f}, surface {:.2f}, tets {:.2f}, modal {:.2f}, laws {:.2f}, total {:.2f}\n",
-             s.read, s.surface, s.tets, s.modal, s.laws, s.total);
+  const std::pair<const char*, double> stages[] = {
+      {"read", s.read},   {"cache", s.cache}, {"surface", s.surface}, {"tets", s.tets},
+      {"modal", s.modal}, {"laws", s.laws},   {"write", s.write}};
+  std::string text;
+  for (const auto& [name, seconds] : stages)
+    text += fmt::format("{} {:.2f} ({:.0f} %), ", name, seconds, 100 * seconds / s.total);
+  fmt::print("seconds: {}total {:.2f}\n", text, s.total);
+}
+
+/// A cache that cannot be kept costs time at the next bake and nothing now.
+void save_cache(BakeCache& cache, std::vector<std::string>& notes) {
+  if (cache.was_damaged())
+    notes.push_back(cache.file().string() + ": was damaged, nothing of it was used, and it was made anew");
+  try {
+    cache.save();
+  } catch (const Error& error) {
+    notes.push_back(std::string("the cache was not kept: ") + error.what());
+  }
 }
 
 int bake(BakeArguments arguments) {
@@ -50,24 +71,33 @@ int bake(BakeArguments arguments) {
   const Stopwatch watch;
   const SpeciesFile species = read_law(arguments);
   BakeResult result;
-  double read_seconds = 0;
+  std::optional<BakeCache> cache;
+  double read_seconds = 0, cache_seconds = 0;
   {
     TerminalProgress progress;  // from here on Ctrl-C is ours
     SegmentedPlant plant;
     read_seconds = timed([&] { plant = read_plant(arguments.plant); });
     progress.throw_if_cancelled();
+    if (!arguments.no_cache && !arguments.cache_folder.empty()) {
+      cache_seconds += timed([&] { cache.emplace(cache_file(arguments.cache_folder, arguments.plant)); });
+      arguments.options.cache = &*cache;
+    }
     result = bake_plant(plant, species.law, arguments.options, progress);
     progress.throw_if_cancelled();
   }
   result.bake.species_hash = species.hash;
   result.seconds.read = read_seconds;
+  result.seconds.write = timed([&] { write_bake(result.bake, arguments.output); });
+  if (cache) cache_seconds += timed([&] { save_cache(*cache, result.notes); });
+  result.seconds.cache = cache_seconds;
   result.seconds.total = watch.seconds();
-  write_bake(result.bake, arguments.output);
   if (!arguments.report.empty()) write_file(arguments.report, bake_report(result));
 
   fmt::print("{} as {}: {} domains -> {}\n\n{}\n", arguments.plant.string(), species.law.species,
              result.bake.domains.size(), arguments.output.string(), bake_table(result.bake));
   print_seconds(result.seconds);
+  if (cache)
+    fmt::print("cache: {} found, {} new ({})\n", cache->hits(), cache->misses(), cache->file().string());
   for (const std::string& note : result.notes) fmt::print("note: {}\n", note);
   return result.bake.failed.empty() ? kSuccess : kPartial;
 }
@@ -99,6 +129,11 @@ void add_bake_verb(CLI::App& app, int& exit_code) {
   verb->add_option("--threads", arguments->options.threads, "Threads to use [all cores]")
       ->check(CLI::Range(0, 1024))
       ->option_text("N");
+  verb->add_option("--cache-dir", arguments->cache_folder,
+                   "Where solids and modes are kept for the next bake of the plant")
+      ->option_text("FOLDER")
+      ->default_str("$XDG_CACHE_HOME/liana");
+  verb->add_flag("--no-cache", arguments->no_cache, "Compute everything, keep nothing");
   verb->add_flag("--strict", arguments->options.strict, "Stop at the first domain that cannot be made solid");
   verb->footer(
       "Example:\n"
