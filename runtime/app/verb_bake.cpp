@@ -14,6 +14,7 @@
 #include "mesher/base/hash.h"
 #include "mesher/io/plant_file.h"
 #include "runtime/app/bake_table.h"
+#include "runtime/app/manifest_run.h"
 #include "runtime/app/terminal_progress.h"
 #include "runtime/app/verbs.h"
 #include "runtime/app/writable.h"
@@ -30,6 +31,8 @@ struct BakeArguments {
   BakeOptions options;
   fs::path cache_folder = default_cache_folder();
   bool no_cache = false;
+  ManifestRun manifest;
+  std::string shard;
 };
 
 SpeciesFile read_law(const BakeArguments& arguments) {
@@ -102,6 +105,37 @@ int bake(BakeArguments arguments) {
   return result.bake.failed.empty() ? kSuccess : kPartial;
 }
 
+/// --manifest and the options that go with it; the others belong into the manifest.
+void add_manifest_options(CLI::App& verb, BakeArguments& arguments) {
+  CLI::Option* manifest =
+      verb.add_option("--manifest", arguments.manifest.manifest,
+                      "Bake all plants of a list (.toml); what is baked already and unchanged is kept")
+          ->option_text("FILE");
+  verb.add_option("--jobs", arguments.manifest.jobs, "Plants of the manifest at a time [one a core]")
+      ->check(CLI::Range(1, 1024))
+      ->option_text("N")
+      ->needs(manifest);
+  verb.add_option("--shard", arguments.shard, "Only the i-th of n parts of the manifest, as 2/5")
+      ->option_text("I/N")
+      ->needs(manifest);
+  verb.add_flag("--merge", arguments.manifest.merge, "Bake nothing: sum up what the shards have baked")
+      ->needs(manifest);
+}
+
+int bake_manifest(const CLI::App& verb, BakeArguments& arguments) {
+  for (const CLI::Option* option : verb.get_options()) {
+    const std::string name = option->get_name();
+    const bool known = name == "--manifest" || name == "--jobs" || name == "--shard" || name == "--merge" ||
+                       name == "--threads";
+    if (option->count() > 0 && !known)
+      throw Error(Error::Kind::Usage, name + " does not go with --manifest",
+                  "write it into the manifest: options = [\"" + name + "\"]");
+  }
+  if (!arguments.shard.empty()) arguments.manifest.shard = parse_shard(arguments.shard);
+  arguments.manifest.threads = arguments.options.threads;
+  return run_manifest(arguments.manifest);
+}
+
 }  // namespace
 
 void add_bake_verb(CLI::App& app, int& exit_code) {
@@ -109,11 +143,9 @@ void add_bake_verb(CLI::App& app, int& exit_code) {
   CLI::App* verb =
       app.add_subcommand("bake", "Turn a segmented plant (.glb, .gltf) and a species into a bake");
   verb->add_option("plant", arguments->plant,
-                   "The plant: one node with a mesh per branch or leaf, metres, +Y up")
-      ->required();
+                   "The plant: one node with a mesh per branch or leaf, metres, +Y up");
   verb->add_option("-s,--species", arguments->species,
                    "A preset's name (see liana inspect --species) or a .toml file")
-      ->required()
       ->option_text("NAME");
   verb->add_option("-o,--output", arguments->output, "The bake to write [the plant's name with .bake, here]");
   verb->add_option("--report", arguments->report, "Also write what was found as JSON");
@@ -140,7 +172,16 @@ void add_bake_verb(CLI::App& app, int& exit_code) {
       "  liana bake data/plants/apple_small.glb --species apple -o apple.bake --report report.json\n\n"
       "Exit code: 0 baked, 1 bad input, 2 bad command line, 3 baked but for some domains, 130 stopped by "
       "Ctrl-C");
-  verb->callback([arguments, &exit_code] { exit_code = bake(*arguments); });
+  add_manifest_options(*verb, *arguments);
+  verb->callback([arguments, verb, &exit_code] {
+    if (!arguments->manifest.manifest.empty()) {
+      exit_code = bake_manifest(*verb, *arguments);
+      return;
+    }
+    if (arguments->plant.empty()) throw CLI::RequiredError("plant");
+    if (arguments->species.empty()) throw CLI::RequiredError("--species");
+    exit_code = bake(*arguments);
+  });
 }
 
 }  // namespace liana
