@@ -20,6 +20,7 @@ Stages::Stages(const SegmentedPlant& plant, const SpeciesLaw& species, const Bak
       options_(options),
       progress_(progress),
       pieces_(plant.domains.size()) {
+  for (size_t i = 0; i < pieces_.size(); ++i) pieces_[i].instance = {i, {}};
   if (plant.domains.empty())
     throw Error(Error::Kind::Input, plant.name + ": there is no branch or leaf in it",
                 "every domain is one mesh node");
