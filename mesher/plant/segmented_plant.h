@@ -12,6 +12,7 @@ namespace liana {
 struct Domain {
   std::string name;
   DomainId parent;  ///< invalid for a trunk; parents come before children
+  double parent_confidence = 1;  ///< that the parent is the right one, 0 to 1; 1 where the file says so itself
   DomainKind kind = DomainKind::Branch;
   int level = 0;  ///< depth in the domain tree, 0 for a trunk
   std::string group;  ///< material group; never empty: as given, else "leaf" or "level<N>"
@@ -22,6 +23,7 @@ struct Domain {
 struct SegmentedPlant {
   std::string name;
   std::vector<Domain> domains;
+  std::vector<std::string> notes;  ///< what reading it guessed, mended or passed over; one line each
   uint64_t source_hash = 0;  ///< of the file it was read from
 };
 
