@@ -8,10 +8,13 @@
 #include "mesher/base/error.h"
 #include "mesher/base/files.h"
 #include "mesher/base/hash.h"
+#include "mesher/io/graph_file.h"
+#include "mesher/io/mtg_file.h"
 #include "mesher/io/plant_file.h"
 #include "mesher/io/text_cursor.h"
 #include "mesher/shells/segment.h"
 #include "mesher/shells/unit_guess.h"
+#include "mesher/surface/branch_tubes.h"
 
 namespace liana {
 namespace {
@@ -19,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMaxFileBytes = size_t{4} << 30;
 
-enum class Format { Unknown, Gltf, Obj, Ply };
+enum class Format { Unknown, Gltf, Obj, Ply, Mtg, Graph };
 
 std::string lower_extension(const fs::path& path) {
   std::string extension = path.extension().string();
@@ -33,8 +36,11 @@ Format format_of(const fs::path& path, std::string_view bytes) {
   if (bytes.starts_with("glTF") || extension == ".glb" || extension == ".gltf") return Format::Gltf;
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r") || extension == ".ply") return Format::Ply;
   if (extension == ".obj") return Format::Obj;
+  if (extension == ".mtg") return Format::Mtg;
   const std::string_view text = trimmed(bytes.substr(0, 4096));
+  if (text.starts_with("{") && text.find("\"liana_graph\"") != std::string_view::npos) return Format::Graph;
   if (text.starts_with("{") && bytes.find("\"meshes\"") != std::string_view::npos) return Format::Gltf;
+  if (text.starts_with("CODE") && bytes.find("ENTITY-CODE") != std::string_view::npos) return Format::Mtg;
   return Format::Unknown;
 }
 
@@ -68,6 +74,31 @@ SegmentedPlant load_soup(TriangleSoup soup, Format format, const fs::path& path,
   return plant;
 }
 
+/// Positions come in the file's unit; an MTG's radii are metres already (its diameters are millimetres).
+SegmentedPlant load_skeleton(PlantGraph graph, Format format, const fs::path& path,
+                             const LoadOptions& options) {
+  const bool mtg = format == Format::Mtg;
+  const Unit unit = options.unit != Unit::Auto ? options.unit : mtg ? Unit::Centimetre : Unit::Metre;
+  const bool z_up = options.up == UpAxis::Z || (options.up == UpAxis::Auto && mtg);
+  for (GraphNode& node : graph.nodes) {
+    node.position *= metres(unit);
+    if (z_up) node.position = Vec3(node.position.x(), node.position.z(), -node.position.y());
+    if (!mtg) node.radius *= metres(unit);
+    if (!(node.position.cwiseAbs().maxCoeff() <= 1e4))
+      throw Error(Error::Kind::Input, path.string() + ": reaches further than 10 km",
+                  "say its unit with --unit m, cm or mm");
+  }
+  if (mtg)
+    graph.notes.push_back(
+        fmt::format("positions taken as {}{}, diameters as millimetres, up as +{}", name_of(unit),
+                    options.unit == Unit::Auto ? ", as MTG files usually have them" : "", z_up ? 'Z' : 'Y'));
+  if (const size_t filled = fill_radii(graph))
+    graph.notes.push_back(
+        fmt::format("{} of {} diameters are missing: filled along the axes and by the pipe model", filled,
+                    graph.nodes.size()));
+  return branch_tubes(graph, path.string());
+}
+
 }  // namespace
 
 bool is_plant_file(const fs::path& path, std::string_view bytes) {
@@ -85,6 +116,10 @@ SegmentedPlant load_plant(const fs::path& path, const LoadOptions& options) {
     plant = load_soup(parse_obj(bytes, file), format, path, options);
   else if (format == Format::Ply)
     plant = load_soup(parse_ply(bytes, file), format, path, options);
+  else if (format == Format::Mtg)
+    plant = load_skeleton(parse_mtg(bytes, file), format, path, options);
+  else if (format == Format::Graph)
+    plant = load_skeleton(parse_graph(bytes, file), format, path, options);
   else
     throw Error(Error::Kind::Input, file + ": is not a plant in a known format",
                 "give a mesh (.obj, .ply, .glb, .gltf) or a skeleton (.mtg, .json)");

@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include "mesher/base/error.h"
+#include "mesher/base/mesh_checks.h"
 #include "mesher/base/parallel.h"
 #include "mesher/io/leaf_names.h"
 #include "mesher/shells/hierarchy.h"
@@ -25,6 +26,15 @@ struct Parts {
   std::vector<ShellShape> shapes;
   std::vector<DomainKind> kinds;
 };
+
+/// Lines of triangles without area are no surface.
+size_t drop_flat(std::vector<Shell>& shells) {
+  return std::erase_if(shells, [](const Shell& shell) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : shell.surface.positions) box.extend(p);
+    return !(surface_area(shell.surface) > 1e-12 * box.diagonal().squaredNorm());
+  });
+}
 
 Parts parts_of(std::vector<Shell> shells, const std::vector<SoupLabel>& labels) {
   Parts parts;
@@ -167,7 +177,9 @@ SegmentedPlant domains_of(Parts parts, const std::vector<Growth>& growth,
 SegmentedPlant segment(const TriangleSoup& soup, Unit unit, const std::string& file) {
   Shells found = split_shells(soup);
   std::vector<std::string> notes = soup.notes;
+  const size_t flat = drop_flat(found.shells);
   note_shells(found, notes);
+  if (flat) notes.push_back(count(flat, "shell", "shells") + " without area left out");
   Parts parts = parts_of(std::move(found.shells), soup.labels);
   const auto leaves =
       static_cast<size_t>(std::count(parts.kinds.begin(), parts.kinds.end(), DomainKind::Leaf));

@@ -274,7 +274,7 @@ ShellShape shape_of(const Mesh& mesh) {
   if (!open) shape.ends.push_back(closed_end(mesh, distance, 0, radius));
   double last = 0;
   for (const ShellEnd& end : shape.ends) last = std::max(last, end.along);
-  if (last < shape.length - 2 * radius)
+  if (last < shape.length - 2 * radius || shape.ends.size() < 2)
     shape.ends.push_back(closed_end(mesh, graph.distances(mesh, {far}), shape.length,
                                     std::max(nodes[node_of[far]].radius, 0.3 * radius)));
   return shape;

@@ -10,8 +10,8 @@
 #include "materials/pipeline/bake_report.h"
 #include "mesher/base/files.h"
 #include "mesher/base/hash.h"
-#include "mesher/io/plant_file.h"
 #include "runtime/app/bake_table.h"
+#include "runtime/app/plant_options.h"
 #include "runtime/app/terminal_progress.h"
 #include "runtime/app/verbs.h"
 #include "runtime/app/writable.h"
@@ -26,6 +26,7 @@ struct BakeArguments {
   std::string species;
   std::vector<std::string> overrides;
   BakeOptions options;
+  LoadOptions load;
 };
 
 SpeciesFile read_law(const BakeArguments& arguments) {
@@ -54,9 +55,10 @@ int bake(BakeArguments arguments) {
   {
     TerminalProgress progress;  // from here on Ctrl-C is ours
     SegmentedPlant plant;
-    read_seconds = timed([&] { plant = read_plant(arguments.plant); });
+    read_seconds = timed([&] { plant = load_plant(arguments.plant, arguments.load); });
     progress.throw_if_cancelled();
     result = bake_plant(plant, species.law, arguments.options, progress);
+    result.notes.insert(result.notes.begin(), plant.notes.begin(), plant.notes.end());
     progress.throw_if_cancelled();
   }
   result.bake.species_hash = species.hash;
@@ -77,10 +79,11 @@ int bake(BakeArguments arguments) {
 void add_bake_verb(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<BakeArguments>();
   CLI::App* verb =
-      app.add_subcommand("bake", "Turn a segmented plant (.glb, .gltf) and a species into a bake");
+      app.add_subcommand("bake", "Turn a plant (.glb, .gltf, .obj, .ply, .mtg, .json) and a species into a bake");
   verb->add_option("plant", arguments->plant,
-                   "The plant: one node with a mesh per branch or leaf, metres, +Y up")
+                   "The plant: a mesh, merged or with a node per branch and leaf, or a skeleton")
       ->required();
+  add_plant_options(*verb, arguments->load);
   verb->add_option("-s,--species", arguments->species,
                    "A preset's name (see liana inspect --species) or a .toml file")
       ->required()
