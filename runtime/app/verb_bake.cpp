@@ -15,10 +15,10 @@
 #include "materials/pipeline/model_comparison.h"
 #include "mesher/base/files.h"
 #include "mesher/base/hash.h"
-#include "mesher/io/plant_file.h"
 #include "mesher/surface/merge_domains.h"
 #include "runtime/app/bake_table.h"
 #include "runtime/app/manifest_run.h"
+#include "runtime/app/plant_options.h"
 #include "runtime/app/terminal_progress.h"
 #include "runtime/app/verbs.h"
 #include "runtime/app/writable.h"
@@ -38,6 +38,7 @@ struct BakeArguments {
   bool no_cache = false;
   ManifestRun manifest;
   std::string shard;
+  LoadOptions load;
 };
 
 SpeciesFile read_law(const BakeArguments& arguments) {
@@ -89,19 +90,16 @@ int bake(BakeArguments arguments) {
   double read_seconds = 0, cache_seconds = 0;
   {
     TerminalProgress progress;  // from here on Ctrl-C is ours
-    read_seconds = timed([&] { plant = read_plant(arguments.plant); });
+    read_seconds = timed([&] { plant = load_plant(arguments.plant, arguments.load); });
     progress.throw_if_cancelled();
-    std::vector<std::string> merged;
-    if (arguments.merge_below >= 0) {
-      MergedPlant coarse = merge_below(plant, arguments.merge_below, arguments.options.threads, progress);
-      plant = std::move(coarse.plant), merged = std::move(coarse.notes);
-    }
+    if (arguments.merge_below >= 0)
+      plant = merge_below(plant, arguments.merge_below, arguments.options.threads, progress).plant;
     if (!arguments.no_cache && !arguments.cache_folder.empty()) {
       cache_seconds += timed([&] { cache.emplace(cache_file(arguments.cache_folder, arguments.plant)); });
       arguments.options.cache = &*cache;
     }
     result = bake_plant(plant, species.law, arguments.options, progress);
-    result.notes.insert(result.notes.begin(), merged.begin(), merged.end());
+    result.notes.insert(result.notes.begin(), plant.notes.begin(), plant.notes.end());
     progress.throw_if_cancelled();
   }
   result.bake.species_hash = species.hash;
@@ -159,18 +157,21 @@ int bake_manifest(const CLI::App& verb, BakeArguments& arguments) {
 
 void add_bake_verb(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<BakeArguments>();
-  CLI::App* verb =
-      app.add_subcommand("bake", "Turn a segmented plant (.glb, .gltf) and a species into a bake");
+  CLI::App* verb = app.add_subcommand(
+      "bake", "Turn a plant (.glb, .gltf, .obj, .ply, .mtg, .json) and a species into a bake");
   verb->add_option("plant", arguments->plant,
-                   "The plant: one node with a mesh per branch or leaf, metres, +Y up");
+                   "The plant: a mesh, merged or with a node per branch and leaf, or a skeleton");
+  add_plant_options(*verb, arguments->load);
   verb->add_option("-s,--species", arguments->species,
                    "A preset's name (see liana inspect --species) or a .toml file")
       ->option_text("NAME");
   verb->add_option("-o,--output", arguments->output, "The bake to write [the plant's name with .bake, here]");
   verb->add_option("--report", arguments->report, "Also write what was found as JSON");
-  verb->add_option("--html", arguments->html, "Also write it as a page for a browser: 3-D view, curves, table")
+  verb->add_option("--html", arguments->html,
+                   "Also write it as a page for a browser: 3-D view, curves, table")
       ->option_text("FILE");
-  verb->add_option("--compare-models", arguments->models, "Also write what each material model would give, as CSV")
+  verb->add_option("--compare-models", arguments->models,
+                   "Also write what each material model would give, as CSV")
       ->option_text("FILE");
   verb->add_option("--set", arguments->overrides,
                    "Change a number of the species, as level0.reference_frequency=1.2; repeatable")
