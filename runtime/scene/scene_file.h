@@ -33,6 +33,15 @@ struct SceneClimber {
   size_t max_particles;
 };
 
+/// A branch or leaf is struck: its particles get a velocity that grows from nothing at its root with the square of
+/// the way to its tip (much like its lowest mode, so that it swings at its own frequency).
+struct ScenePluck {
+  size_t plant;        ///< which [[plant]], from 0
+  std::string domain;  ///< name, or "#id", of a domain of its bake
+  double time;         ///< s
+  Vec3 velocity;       ///< of the tip, m/s
+};
+
 struct SceneWind {
   Vec3 velocity = Vec3::Zero();  ///< mean, m/s
   double gust = 0.4;             ///< standard deviation of the speed over its mean
@@ -56,6 +65,7 @@ struct Scene {
   std::vector<SceneObstacle> obstacles;
   std::vector<ScenePlant> plants;
   std::vector<SceneClimber> climbers;
+  std::vector<ScenePluck> plucks;
   std::optional<SceneCamera> camera;  ///< absent: frame everything
 };
 

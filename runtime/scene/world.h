@@ -64,6 +64,12 @@ class World final : public Simulation {
     std::vector<WorldSpring> springs;  // wind, grab and contacts of the step
     WorldReport report;
   };
+  struct Pluck {
+    size_t plant;
+    BranchId branch;
+    size_t step;  // before which it happens
+    Vec3 velocity;
+  };
   struct Grab {
     size_t plant;
     WorldSpring spring;
@@ -72,6 +78,8 @@ class World final : public Simulation {
   double time() const { return static_cast<double>(steps_) * scene_.time_step; }
   void add_baked(const ScenePlant& entry);
   void add_climber(const SceneClimber& entry, uint64_t seed);
+  void add_pluck(const ScenePluck& entry, const Bake& bake);
+  void pluck(size_t index);
   void step_inhabitant(size_t index);
   void add_to(DrawScene& scene, bool names) const;
 
@@ -83,6 +91,7 @@ class World final : public Simulation {
   ShelteredWind wind_;  // the same, calmed by obstacles and the ground
   std::vector<std::unique_ptr<Inhabitant>> inhabitants_;
   std::optional<Grab> grabbed_;
+  std::vector<Pluck> plucks_;
   size_t steps_ = 0;
   PhaseSeconds last_step_;
   std::vector<std::string> notes_;
