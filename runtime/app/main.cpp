@@ -55,6 +55,7 @@ int main(int argc, char** argv) {
   int exit_code = liana::kSuccess;
   liana::add_bake_verb(app, exit_code);
   liana::add_inspect_verb(app, exit_code);
+  liana::add_infer_verb(app, exit_code);
   liana::add_verify_verb(app, exit_code);
   liana::add_simulate_verb(app, exit_code);
   liana::add_edit_verb(app, exit_code);
