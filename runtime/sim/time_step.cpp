@@ -1,11 +1,42 @@
 #include "runtime/sim/time_step.h"
 
+#include <cstddef>
+
 #include "runtime/sim/generalized_alpha.h"
+#include "runtime/sim/joints.h"
 
 namespace liana {
 namespace {
-const BodyPose kWorldPose;
-const Motion kWorld;
+
+// The kernels read these structures as rows of numbers.
+static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Quat) == 4 * sizeof(double));
+static_assert(sizeof(Particle) == lanes::kParticleStride * sizeof(double));
+static_assert(offsetof(Particle, half_length) == 1 * sizeof(double));
+static_assert(offsetof(Particle, mass) == 4 * sizeof(double));
+static_assert(offsetof(Particle, inertia) == 5 * sizeof(double));
+static_assert(offsetof(Particle, mass_damping) == 8 * sizeof(double));
+static_assert(offsetof(Particle, stiffness_damping) == 9 * sizeof(double));
+static_assert(offsetof(Particle, joint) == 10 * sizeof(double));
+static_assert(offsetof(Joint, on_self) == 3 * sizeof(double));
+static_assert(offsetof(Joint, rest) == 6 * sizeof(double));
+static_assert(offsetof(Joint, shear_stiffness) == 10 * sizeof(double));
+static_assert(offsetof(Joint, bend_stiffness) == 13 * sizeof(double));
+static_assert(offsetof(Joint, rest_force) == 16 * sizeof(double));
+static_assert(offsetof(Joint, rest_moment) == 19 * sizeof(double));
+static_assert(sizeof(Motion) == lanes::kMotionStride * sizeof(double));
+static_assert(offsetof(Motion, orientation) == 4 * sizeof(double));
+static_assert(offsetof(Motion, velocity) == 8 * sizeof(double));
+static_assert(offsetof(Motion, angular_velocity) == 11 * sizeof(double));
+static_assert(offsetof(Motion, acceleration) == 14 * sizeof(double));
+static_assert(offsetof(Motion, angular_acceleration) == 17 * sizeof(double));
+
+// Packs whose joints are looked at before they are eliminated: their records fit the first-level cache.
+constexpr size_t kPacksAtOnce = 8;
+
+const double* numbers(const void* structures) {
+  return static_cast<const double*>(structures);
+}
+
 }  // namespace
 
 // Balanced at t + (1−α_f) h, with x_f = x̂ + k₁ a₁, v_f = v̂ + k₂ a₁ (x̂, v̂ the prediction with a₁ = 0):
@@ -22,7 +53,7 @@ struct PlantStepper::Substep {
 
 StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
                               std::span<const WorldSpring> transient, const StepOptions& options) noexcept {
-  reserve(plant.particles.size());
+  prepare(plant);
   StepReport report;
   report.calibrated = options.dt == plant.scheme.dt;
 
@@ -53,106 +84,77 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
 
 bool PlantStepper::substep(const Plant& plant, const Substep& step, const std::vector<Motion>& from,
                            std::vector<Motion>& to, double& gap) noexcept {
-  predict(plant, step, from);
+  const auto count = static_cast<uint32_t>(plant.particles.size());
+  const std::span<const lanes::Pack> packs = order_.packs();
+  const auto& [alpha_m, alpha_f, gamma, beta] = step.method;
+  const lanes::StepView view{
+      .count = count,
+      .particle = numbers(plant.particles.data()),
+      .from = numbers(from.data()),
+      .to = static_cast<double*>(static_cast<void*>(to.data())),
+      .pose = pose_.data(),
+      .block = block_.data(),
+      .record = record_.data(),
+      .packs = packs.data(),
+      .gravity = {step.gravity.x(), step.gravity.y(), step.gravity.z()},
+      .h = step.h,
+      .alpha_m = alpha_m,
+      .alpha_f = alpha_f,
+      .gamma = gamma,
+      .beta = beta,
+      .position_rate = step.position_rate,
+      .velocity_rate = step.velocity_rate,
+  };
+  kernels_->predict(view, 0, count);
+  for (size_t i = 0; i < std::min<size_t>(count, step.external.size()); ++i) {
+    Eigen::Map<Vec6> load(&block_[lanes::kBlockStride * i + lanes::kBlockLoad]);
+    load.head<3>() += step.external[i].force;
+    load.tail<3>() += step.external[i].torque;
+  }
   add_springs(plant.anchors, step);
   add_springs(step.transient, step);
-  eliminate(plant, step);
-  return advance(plant, step, from, to, gap);
-}
-
-// Poses at the moment of balance if a₁ were 0, and every particle's own block and load.
-void PlantStepper::predict(const Plant& plant, const Substep& step,
-                           const std::vector<Motion>& from) noexcept {
-  const auto& [alpha_m, alpha_f, gamma, beta] = step.method;
-  const double t = (1 - alpha_f) * step.h, t2 = t * step.h * (0.5 - beta), tv = t * (1 - gamma);
-  for (size_t i = 0; i < plant.particles.size(); ++i) {
-    const Particle& particle = plant.particles[i];
-    const Motion& m = from[i];
-    BodyPose& pose = pose_[i];
-    pose.position = m.position + t * m.velocity + t2 * m.acceleration;
-    pose.orientation = rotation_exp(t * m.angular_velocity + t2 * m.angular_acceleration) * m.orientation;
-    pose.velocity = m.velocity + tv * m.acceleration;
-    pose.angular_velocity = m.angular_velocity + tv * m.angular_acceleration;
-
-    const Mat3 R = pose.orientation.toRotationMatrix();
-    const Mat3 J = R * particle.inertia.asDiagonal() * R.transpose();
-    const double d_M = particle.mass_damping, implicit = 1 - alpha_m + step.velocity_rate * d_M;
-    Vec3 force = particle.mass * (step.gravity - alpha_m * m.acceleration - d_M * pose.velocity);
-    Vec3 torque = -(J * (alpha_m * m.angular_acceleration + d_M * pose.angular_velocity));
-    if (i < step.external.size()) force += step.external[i].force, torque += step.external[i].torque;
-    solver_.reset(i, implicit * particle.mass, implicit * J, force, torque);
+  for (size_t i = 0; i < packs.size(); i += kPacksAtOnce) {
+    const size_t end = std::min(i + kPacksAtOnce, packs.size());
+    kernels_->assemble(view, i, end);
+    kernels_->factor(view, i, end);
   }
+  const lanes::AdvanceResult result = kernels_->advance(view, 0, packs.size());
+  gap = std::max(gap, result.gap);
+  return result.finite;
 }
 
 void PlantStepper::add_springs(std::span<const WorldSpring> springs, const Substep& step) noexcept {
+  using Row = Eigen::Map<const Vec3>;
   for (const WorldSpring& spring : springs) {
     const size_t i = spring.particle.index();
-    const BodyPose& pose = pose_[i];
-    const Vec3 lever = pose.orientation * spring.on_particle;
-    const Vec3 slip = pose.velocity + pose.angular_velocity.cross(lever) - spring.target_velocity;
-    const Vec3 force = -spring.stiffness * (pose.position + lever - spring.target) - spring.damping * slip;
-    solver_.add_point(i, lever, step.position_rate * spring.stiffness + step.velocity_rate * spring.damping);
-    solver_.add_load(i, force, lever.cross(force));
+    const double* pose = &pose_[lanes::kPoseStride * i];
+    const Vec3 lever = Eigen::Map<const Quat>(pose + 4) * spring.on_particle;
+    const Vec3 slip = Row(pose + 8) + Row(pose + 11).cross(lever) - spring.target_velocity;
+    const Vec3 force = -spring.stiffness * (Row(pose) + lever - spring.target) - spring.damping * slip;
+    const Mat3 S = step.position_rate * spring.stiffness + step.velocity_rate * spring.damping;
+    const Mat3 L = skew(lever), Q = L * S, R = Q * L.transpose();
+    double* block = &block_[lanes::kBlockStride * i];
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column <= row; ++column) *block++ += S(row, column);
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) *block++ += Q(row, column);
+      for (int column = 0; column <= row; ++column) *block++ += R(row, column);
+    }
+    for (int row = 0; row < 3; ++row) *block++ += force[row];
+    const Vec3 torque = lever.cross(force);
+    for (int row = 0; row < 3; ++row) *block++ += torque[row];
   }
 }
 
-// Leaves to root: what each joint exerts, then the particle out of the system.
-void PlantStepper::eliminate(const Plant& plant, const Substep& step) noexcept {
-  for (size_t i = plant.particles.size(); i-- > 0;) {
-    const Particle& particle = plant.particles[i];
-    const bool root = !particle.parent.valid();
-    const BodyPose& parent = root ? kWorldPose : pose_[particle.parent.index()];
-    const JointStrain strain = joint_strain(particle.joint, parent, pose_[i]);
-    const JointAction action =
-        joint_action(particle.joint, particle.stiffness_damping, strain, parent, pose_[i]);
-    solver_.add_load(i, action.force, strain.from_child.cross(action.force) + action.moment);
-    if (!root)
-      solver_.add_load(particle.parent.index(), -action.force,
-                       -strain.from_parent.cross(action.force) - action.moment);
-    const double implicit = step.position_rate + step.velocity_rate * particle.stiffness_damping;
-    solver_.eliminate(
-        i, particle.parent.value,
-        {strain.from_child, strain.from_parent, implicit * action.shear, implicit * action.bend});
-  }
-}
-
-// Root to leaves: accelerations, the new state, its largest gap. False when anything is not finite.
-bool PlantStepper::advance(const Plant& plant, const Substep& step, const std::vector<Motion>& from,
-                           std::vector<Motion>& to, double& gap) noexcept {
-  const auto& [alpha_m, alpha_f, gamma, beta] = step.method;
-  const double h = step.h, h2 = h * h;
-  double sum = 0;  // finite exactly when every number added is
-  for (size_t i = 0; i < plant.particles.size(); ++i) {
-    const Particle& particle = plant.particles[i];
-    const Motion& m = from[i];
-    const Vec6& a1 = solver_.substitute(i);
-    Motion& n = to[i];
-    n.acceleration = a1.head<3>();
-    n.angular_acceleration = a1.tail<3>();
-    n.position = m.position + h * m.velocity + h2 * ((0.5 - beta) * m.acceleration + beta * n.acceleration);
-    const Vec3 turn =
-        h * m.angular_velocity + h2 * ((0.5 - beta) * m.angular_acceleration + beta * n.angular_acceleration);
-    n.orientation = (rotation_exp(turn) * m.orientation).normalized();
-    n.velocity = m.velocity + h * ((1 - gamma) * m.acceleration + gamma * n.acceleration);
-    n.angular_velocity =
-        m.angular_velocity + h * ((1 - gamma) * m.angular_acceleration + gamma * n.angular_acceleration);
-
-    const Motion& parent = particle.parent.valid() ? to[particle.parent.index()] : kWorld;
-    const double open =
-        joint_gap(particle.joint, parent.position, parent.orientation, n.position, n.orientation);
-    const bool free = particle.joint.shear_stiffness.isZero(0);
-    if (!free) gap = std::max(gap, open / (2 * particle.half_length));
-    sum += open + n.velocity.sum() + n.angular_velocity.sum() + n.orientation.w();
-  }
-  return std::isfinite(sum);
-}
-
-void PlantStepper::reserve(size_t particles) {
-  if (solver_.size() == particles) return;
-  solver_.resize(particles);
-  pose_.resize(particles);
-  now_.resize(particles);
-  next_.resize(particles);
+void PlantStepper::prepare(const Plant& plant) {
+  if (!order_.update(plant.particles)) return;
+  const size_t count = plant.particles.size();
+  pose_.assign(lanes::kPoseStride * (count + 1), 0);
+  pose_[lanes::kPoseStride * count + 7] = 1;  // the world: identity, at rest
+  block_.assign(lanes::kBlockStride * (count + 1), 0);
+  record_.resize(4 * lanes::kRecordLanes * order_.packs().size());
+  now_.resize(count);
+  next_.resize(count);
 }
 
 }  // namespace liana
