@@ -37,6 +37,51 @@ const double* numbers(const void* structures) {
   return static_cast<const double*>(structures);
 }
 
+// What a substep computes with and then forgets. One per thread: while plants are stepped one after the
+// other, it stays in the cache.
+struct Workspace {
+  std::vector<double> pose, block, record;  // see step_view.h
+
+  void prepare(const EliminationOrder& order) {
+    const auto grow = [](std::vector<double>& numbers, size_t size) {
+      if (numbers.size() < size) numbers.resize(size);
+    };
+    grow(pose, size_t{lanes::kPoseStride} * order.pose_slots());
+    grow(block, size_t{lanes::kBlockStride} * order.block_slots());
+    grow(record, size_t{4 * lanes::kRecordLanes} * order.packs().size());
+    // The world: identity, at rest. What it is handed is not looked at.
+    double* world = &pose[size_t{lanes::kPoseStride} * order.world_slot()];
+    std::fill_n(world, lanes::kPoseStride, 0.0);
+    world[7] = 1;
+    std::fill_n(block_of(order.world_slot()), lanes::kBlockStride, 0.0);
+    for (const EliminationOrder::Handover& h : order.handovers())
+      std::fill_n(block_of(h.from), lanes::kBlockStride, 0.0);
+  }
+  const double* pose_of(uint32_t slot) const { return &pose[size_t{lanes::kPoseStride} * slot]; }
+  double* block_of(uint32_t slot) { return &block[size_t{lanes::kBlockStride} * slot]; }
+};
+thread_local Workspace workspace;
+
+// A spring's force and stiffness into the block of its particle.
+void add_spring(const WorldSpring& spring, double position_rate, double velocity_rate, const double* pose,
+                double* block) {
+  using Row = Eigen::Map<const Vec3>;
+  const Vec3 lever = Eigen::Map<const Quat>(pose + 4) * spring.on_particle;
+  const Vec3 slip = Row(pose + 8) + Row(pose + 11).cross(lever) - spring.target_velocity;
+  const Vec3 force = -spring.stiffness * (Row(pose) + lever - spring.target) - spring.damping * slip;
+  const Mat3 S = position_rate * spring.stiffness + velocity_rate * spring.damping;
+  const Mat3 L = skew(lever), Q = L * S, R = Q * L.transpose();  // T(r)ᵀ [S 0; 0 0] T(r)
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column <= row; ++column) *block++ += S(row, column);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) *block++ += Q(row, column);
+    for (int column = 0; column <= row; ++column) *block++ += R(row, column);
+  }
+  const Vec3 torque = lever.cross(force);
+  for (int row = 0; row < 3; ++row) *block++ += force[row];
+  for (int row = 0; row < 3; ++row) *block++ += torque[row];
+}
+
 }  // namespace
 
 // Balanced at t + (1−α_f) h, with x_f = x̂ + k₁ a₁, v_f = v̂ + k₂ a₁ (x̂, v̂ the prediction with a₁ = 0):
@@ -53,7 +98,11 @@ struct PlantStepper::Substep {
 
 StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
                               std::span<const WorldSpring> transient, const StepOptions& options) noexcept {
-  prepare(plant);
+  const size_t count = plant.particles.size();
+  order_.update(plant.particles, false);
+  now_.resize(count);
+  next_.resize(count);
+  sort_springs(plant, transient);
   StepReport report;
   report.calibrated = options.dt == plant.scheme.dt;
 
@@ -65,7 +114,14 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
     report.gap = 0;
     report.finite = true;
     for (int i = 0; i < parts && report.finite && (last || report.gap <= options.gap_limit); ++i) {
-      report.finite = substep(plant, part, i == 0 ? plant.motion : now_, next_, report.gap);
+      const std::vector<Motion>& from = i == 0 ? plant.motion : now_;
+      Outcome outcome = substep(plant, part, from, next_, report.gap);
+      if (outcome == Outcome::TreeChanged) {
+        order_.update(plant.particles, true);
+        sort_springs(plant, transient);
+        outcome = substep(plant, part, from, next_, report.gap);
+      }
+      report.finite = outcome == Outcome::Finite;
       now_.swap(next_);
       ++report.solves;
     }
@@ -82,20 +138,19 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
   return report;
 }
 
-bool PlantStepper::substep(const Plant& plant, const Substep& step, const std::vector<Motion>& from,
-                           std::vector<Motion>& to, double& gap) noexcept {
-  const auto count = static_cast<uint32_t>(plant.particles.size());
-  const std::span<const lanes::Pack> packs = order_.packs();
+PlantStepper::Outcome PlantStepper::substep(const Plant& plant, const Substep& step,
+                                            const std::vector<Motion>& from, std::vector<Motion>& to,
+                                            double& gap) noexcept {
+  workspace.prepare(order_);
   const auto& [alpha_m, alpha_f, gamma, beta] = step.method;
   const lanes::StepView view{
-      .count = count,
       .particle = numbers(plant.particles.data()),
       .from = numbers(from.data()),
       .to = static_cast<double*>(static_cast<void*>(to.data())),
-      .pose = pose_.data(),
-      .block = block_.data(),
-      .record = record_.data(),
-      .packs = packs.data(),
+      .pose = workspace.pose.data(),
+      .block = workspace.block.data(),
+      .record = workspace.record.data(),
+      .packs = order_.packs().data(),
       .gravity = {step.gravity.x(), step.gravity.y(), step.gravity.z()},
       .h = step.h,
       .alpha_m = alpha_m,
@@ -105,56 +160,76 @@ bool PlantStepper::substep(const Plant& plant, const Substep& step, const std::v
       .position_rate = step.position_rate,
       .velocity_rate = step.velocity_rate,
   };
-  kernels_->predict(view, 0, count);
-  for (size_t i = 0; i < std::min<size_t>(count, step.external.size()); ++i) {
-    Eigen::Map<Vec6> load(&block_[lanes::kBlockStride * i + lanes::kBlockLoad]);
-    load.head<3>() += step.external[i].force;
-    load.tail<3>() += step.external[i].torque;
-  }
-  add_springs(plant.anchors, step);
-  add_springs(step.transient, step);
-  for (size_t i = 0; i < packs.size(); i += kPacksAtOnce) {
-    const size_t end = std::min(i + kPacksAtOnce, packs.size());
-    kernels_->assemble(view, i, end);
-    kernels_->factor(view, i, end);
-  }
-  const lanes::AdvanceResult result = kernels_->advance(view, 0, packs.size());
-  gap = std::max(gap, result.gap);
-  return result.finite;
-}
-
-void PlantStepper::add_springs(std::span<const WorldSpring> springs, const Substep& step) noexcept {
-  using Row = Eigen::Map<const Vec3>;
-  for (const WorldSpring& spring : springs) {
-    const size_t i = spring.particle.index();
-    const double* pose = &pose_[lanes::kPoseStride * i];
-    const Vec3 lever = Eigen::Map<const Quat>(pose + 4) * spring.on_particle;
-    const Vec3 slip = Row(pose + 8) + Row(pose + 11).cross(lever) - spring.target_velocity;
-    const Vec3 force = -spring.stiffness * (Row(pose) + lever - spring.target) - spring.damping * slip;
-    const Mat3 S = step.position_rate * spring.stiffness + step.velocity_rate * spring.damping;
-    const Mat3 L = skew(lever), Q = L * S, R = Q * L.transpose();
-    double* block = &block_[lanes::kBlockStride * i];
-    for (int row = 0; row < 3; ++row)
-      for (int column = 0; column <= row; ++column) *block++ += S(row, column);
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column) *block++ += Q(row, column);
-      for (int column = 0; column <= row; ++column) *block++ += R(row, column);
+  const auto eliminate = [&](const EliminationOrder::Part& part) {
+    for (size_t i = part.first; i < part.last; i += kPacksAtOnce) {
+      const size_t end = std::min<size_t>(i + kPacksAtOnce, part.last);
+      kernels_->assemble(view, i, end);
+      kernels_->factor(view, i, end);
     }
-    for (int row = 0; row < 3; ++row) *block++ += force[row];
-    const Vec3 torque = lever.cross(force);
-    for (int row = 0; row < 3; ++row) *block++ += torque[row];
+  };
+  const std::span<const EliminationOrder::Part> parts = order_.parts();
+  const EliminationOrder::Part top = order_.top();
+
+  // Leaves to root: poses at the moment of balance, loads, joints, every particle out of the system.
+  if (!order_.still_holds(plant.particles, from, top)) return Outcome::TreeChanged;
+  kernels_->predict(view, top.first, top.last);
+  add_loads(step, top, static_cast<uint32_t>(parts.size()));
+  for (uint32_t k = 0; k < parts.size(); ++k) {
+    if (!order_.still_holds(plant.particles, from, parts[k])) return Outcome::TreeChanged;
+    kernels_->predict(view, parts[k].first, parts[k].last);
+    add_loads(step, parts[k], k);
+    eliminate(parts[k]);
+  }
+  for (const EliminationOrder::Handover& h : order_.handovers())
+    for (int i = 0; i < lanes::kBlockStride; ++i)
+      workspace.block_of(h.to)[i] += workspace.block_of(h.from)[i];
+  eliminate(top);
+
+  // Root to leaves: accelerations and the new state.
+  lanes::AdvanceResult result = kernels_->advance(view, top.first, top.last);
+  for (const EliminationOrder::Part& part : parts) {
+    order_.still_holds(plant.particles, from, part);
+    const lanes::AdvanceResult more = kernels_->advance(view, part.first, part.last);
+    result.gap = std::max(result.gap, more.gap);
+    result.finite = result.finite && more.finite;
+  }
+  gap = std::max(gap, result.gap);
+  return result.finite ? Outcome::Finite : Outcome::NotFinite;
+}
+
+void PlantStepper::add_loads(const Substep& step, const EliminationOrder::Part& part,
+                             uint32_t number) noexcept {
+  if (!step.external.empty()) {
+    for (uint32_t p = part.first; p < part.last; ++p) {
+      const lanes::Pack& pack = order_.packs()[p];
+      for (uint32_t k = 0; k < pack.count; ++k) {
+        if (pack.self[k] >= step.external.size()) continue;
+        Eigen::Map<Vec6> load(workspace.block_of(pack.slot[k]) + lanes::kBlockLoad);
+        load.head<3>() += step.external[pack.self[k]].force;
+        load.tail<3>() += step.external[pack.self[k]].torque;
+      }
+    }
+  }
+  for (uint32_t i = first_spring_[number]; i < first_spring_[number + 1]; ++i) {
+    const uint32_t slot = order_.slot_of(springs_[i]->particle);
+    add_spring(*springs_[i], step.position_rate, step.velocity_rate, workspace.pose_of(slot),
+               workspace.block_of(slot));
   }
 }
 
-void PlantStepper::prepare(const Plant& plant) {
-  if (!order_.update(plant.particles)) return;
-  const size_t count = plant.particles.size();
-  pose_.assign(lanes::kPoseStride * (count + 1), 0);
-  pose_[lanes::kPoseStride * count + 7] = 1;  // the world: identity, at rest
-  block_.assign(lanes::kBlockStride * (count + 1), 0);
-  record_.resize(4 * lanes::kRecordLanes * order_.packs().size());
-  now_.resize(count);
-  next_.resize(count);
+// In the order given, part by part.
+void PlantStepper::sort_springs(const Plant& plant, std::span<const WorldSpring> transient) noexcept {
+  const std::span<const WorldSpring> lists[] = {plant.anchors, transient};
+  first_spring_.assign(order_.parts().size() + 2, 0);
+  for (const auto& list : lists)
+    for (const WorldSpring& spring : list) ++first_spring_[order_.part_of(spring.particle) + 1];
+  for (size_t k = 1; k < first_spring_.size(); ++k) first_spring_[k] += first_spring_[k - 1];
+  springs_.resize(first_spring_.back());
+  for (const auto& list : lists)
+    for (const WorldSpring& spring : list)
+      springs_[first_spring_[order_.part_of(spring.particle)]++] = &spring;
+  for (size_t k = first_spring_.size() - 1; k > 0; --k) first_spring_[k] = first_spring_[k - 1];
+  first_spring_[0] = 0;
 }
 
 }  // namespace liana

@@ -45,23 +45,23 @@ class PlantStepper {
   StepReport step(Plant& plant, std::span<const Wrench> external, std::span<const WorldSpring> transient,
                   const StepOptions& options) noexcept;
 
-  /// Makes room for the plant's particles and orders them; step() does so itself when the tree changed.
-  void prepare(const Plant& plant);
-
   /// What the substep runs on; the fastest that this processor has. For tests and benchmarks.
   void use(const lanes::Kernels& kernels) { kernels_ = &kernels; }
 
  private:
   struct Substep;  // the numbers and loads that one substep is taken with
+  enum class Outcome { Finite, NotFinite, TreeChanged };
 
-  bool substep(const Plant& plant, const Substep& step, const std::vector<Motion>& from,
-               std::vector<Motion>& to, double& gap) noexcept;
-  void add_springs(std::span<const WorldSpring> springs, const Substep& step) noexcept;
+  Outcome substep(const Plant& plant, const Substep& step, const std::vector<Motion>& from,
+                  std::vector<Motion>& to, double& gap) noexcept;
+  void sort_springs(const Plant& plant, std::span<const WorldSpring> transient) noexcept;
+  void add_loads(const Substep& step, const EliminationOrder::Part& part, uint32_t number) noexcept;
 
   const lanes::Kernels* kernels_ = &lanes::best_kernels();
   EliminationOrder order_;
-  std::vector<double> pose_, block_, record_;  // see step_view.h
-  std::vector<Motion> now_, next_;  // the plant's own state stays untouched until a step is accepted
+  std::vector<const WorldSpring*> springs_;  // anchors and transient ones, by part
+  std::vector<uint32_t> first_spring_;       // of each part and the top
+  std::vector<Motion> now_, next_;           // the plant's own state stays untouched until a step is accepted
 };
 
 }  // namespace liana

@@ -86,16 +86,15 @@ inline void set_motion(const Rows<double>& rows, int lanes, const MotionL& m) {
 }
 
 // Poses at the moment of balance if a₁ were 0, and every particle's own block and load.
-inline void predict(const StepView& view, uint32_t begin, uint32_t end) {
+inline void predict(const StepView& view, size_t begin, size_t end) {
   const double t = (1 - view.alpha_f) * view.h, t2 = t * view.h * (0.5 - view.beta),
                tv = t * (1 - view.gamma);
   const Vec3L gravity{all(view.gravity[0]), all(view.gravity[1]), all(view.gravity[2])};
-  for (uint32_t first = begin; first < end; first += 4) {
-    uint32_t index[4];
-    const int lanes = end - first < 4 ? static_cast<int>(end - first) : 4;
-    for (int k = 0; k < 4; ++k) index[k] = k < lanes ? first + static_cast<uint32_t>(k) : first;
-    const MotionL m = get_motion({view.from, kMotionStride, index});
-    const Rows<const double> particle(view.particle, kParticleStride, index);
+  for (size_t i = begin; i < end; ++i) {
+    const Pack& pack = view.packs[i];
+    const int lanes = static_cast<int>(pack.count);
+    const MotionL m = get_motion({view.from, kMotionStride, pack.self});
+    const Rows<const double> particle(view.particle, kParticleStride, pack.self);
     Lanes mass, d_M, skip, skip2, skip3;
     Vec3L inertia;
     particle.get(4, mass, inertia.x, inertia.y, inertia.z);
@@ -106,7 +105,7 @@ inline void predict(const StepView& view, uint32_t begin, uint32_t end) {
     pose.orientation = rotation_exp(t * m.angular_velocity + t2 * m.angular_acceleration) * m.orientation;
     pose.velocity = m.velocity + tv * m.acceleration;
     pose.angular_velocity = m.angular_velocity + tv * m.angular_acceleration;
-    set_pose({view.pose, kPoseStride, index}, lanes, pose);
+    set_pose({view.pose, kPoseStride, pack.slot}, lanes, pose);
 
     const Mat3L R = matrix(pose.orientation);
     const Vec3L* r = R.column;
@@ -123,7 +122,7 @@ inline void predict(const StepView& view, uint32_t begin, uint32_t end) {
                        zx * spin.x + zy * spin.y + zz * spin.z};
     const Lanes implicit = all(1 - view.alpha_m) + view.velocity_rate * d_M, zero = all(0);
     const Lanes M = implicit * mass;
-    const Rows<double> block(view.block, kBlockStride, index);
+    const Rows<double> block(view.block, kBlockStride, pack.slot);
     block.set(0, lanes, M, zero, M, zero);
     block.set(4, lanes, zero, M, zero, zero);
     block.set(8, lanes, zero, implicit * xx, zero, zero);
@@ -139,7 +138,7 @@ inline void assemble(const StepView& view, size_t begin, size_t end) {
   for (size_t i = begin; i < end; ++i) {
     const Pack& pack = view.packs[i];
     double* record = view.record + i * (4 * kRecordLanes);
-    const PoseL child = get_pose({view.pose, kPoseStride, pack.self});
+    const PoseL child = get_pose({view.pose, kPoseStride, pack.slot});
     const PoseL parent = get_pose({view.pose, kPoseStride, pack.parent});
     const Rows<const double> particle(view.particle, kParticleStride, pack.self);
     Lanes half_length, d_K, skip, skip2, skip3;
@@ -255,7 +254,7 @@ inline void factor(const StepView& view, size_t begin, size_t end) {
   for (size_t i = begin; i < end; ++i) {
     const Pack& pack = view.packs[i];
     double* record = view.record + i * (4 * kRecordLanes);
-    const Rows<double> own(view.block, kBlockStride, pack.self);
+    const Rows<double> own(view.block, kBlockStride, pack.slot);
     InertiaL A;
     Vec3L force, moment;
     Lanes pad;
@@ -299,7 +298,7 @@ inline void factor(const StepView& view, size_t begin, size_t end) {
     moment = moment + cross(r_p, force);
 
     const int lanes = static_cast<int>(pack.count);
-    const Rows<double> up(view.block, kBlockStride, pack.parent);
+    const Rows<double> up(view.block, kBlockStride, pack.up);
     up.add(0, lanes, A.P[0], A.P[1], A.P[2], A.P[3]);
     up.add(4, lanes, A.P[4], A.P[5], A.Q[0][0], A.Q[0][1]);
     up.add(8, lanes, A.Q[0][2], A.R[0], A.Q[1][0], A.Q[1][1]);
@@ -332,7 +331,7 @@ inline AccelerationL substitute_pack(const double* record, const AccelerationL& 
 inline void substitute(const StepView& view, size_t begin, size_t end) {
   for (size_t i = end; i-- > begin;) {
     const Pack& pack = view.packs[i];
-    const Rows<double> up(view.pose, kPoseStride, pack.parent), own(view.pose, kPoseStride, pack.self);
+    const Rows<double> up(view.pose, kPoseStride, pack.parent), own(view.pose, kPoseStride, pack.slot);
     AccelerationL parent;
     Lanes pad, pad2;
     up.get(8, parent.linear.x, parent.linear.y, parent.linear.z, parent.angular.x);
@@ -368,7 +367,7 @@ inline AdvanceResult advance(const StepView& view, size_t begin, size_t end) {
 
     const int lanes = static_cast<int>(pack.count);
     set_motion({view.to, kMotionStride, pack.self}, lanes, n);
-    set_pose({view.pose, kPoseStride, pack.self}, lanes,
+    set_pose({view.pose, kPoseStride, pack.slot}, lanes,
              {n.position, n.acceleration, n.angular_acceleration, n.orientation});
 
     const Rows<const double> particle(view.particle, kParticleStride, pack.self);

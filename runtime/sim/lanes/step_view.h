@@ -8,10 +8,12 @@
 namespace liana::lanes {
 
 /// Four particles that do not depend on each other, handled together. The first `count` lanes are theirs, the
-/// others repeat the first. parent is StepView::count, the world, for a root.
-struct alignas(16) Pack {
-  uint32_t self[4];
-  uint32_t parent[4];
+/// others repeat the first.
+struct Pack {
+  uint32_t self[4];    ///< particle
+  uint32_t slot[4];    ///< its pose and block
+  uint32_t parent[4];  ///< its parent's pose, or the world's
+  uint32_t up[4];      ///< block that what it passes on is added to
   uint32_t count;
 };
 
@@ -25,12 +27,11 @@ constexpr int kRecordLanes = 73;  ///< Lanes per pack, see step_kernels.h
 
 /// One substep over one plant. Symbols as in time_step.h.
 struct StepView {
-  uint32_t count;          ///< particles; record `count` of pose and block stands for the world
   const double* particle;  ///< kParticleStride each
   const double* from;      ///< Motion at the start, kMotionStride each
   double* to;              ///< Motion at the end
-  double* pose;            ///< kPoseStride each, count + 1 of them: first as balanced, then as at the end
-  double* block;           ///< kBlockStride each, count + 1 of them
+  double* pose;            ///< kPoseStride per slot: first as balanced, then as at the end
+  double* block;           ///< kBlockStride per slot
   double* record;          ///< kRecordLanes × 4 per pack
   const Pack* packs;       ///< children in earlier packs than parents
   double gravity[3];
@@ -44,12 +45,12 @@ struct AdvanceResult {
   bool finite = true;  ///< every number of the new state is
 };
 
-/// The phases of a substep, in order; each runs over particles or packs [begin, end).
+/// The phases of a substep, in order; each runs over packs [begin, end).
 struct Kernels {
   const char* name;
-  void (*predict)(const StepView&, uint32_t begin, uint32_t end);
+  void (*predict)(const StepView&, size_t begin, size_t end);
   void (*assemble)(const StepView&, size_t begin, size_t end);
-  void (*factor)(const StepView&, size_t begin, size_t end);      ///< packs in order
+  void (*factor)(const StepView&, size_t begin, size_t end);
   void (*substitute)(const StepView&, size_t begin, size_t end);  ///< last pack first: accelerations only
   AdvanceResult (*advance)(const StepView&, size_t begin, size_t end);  ///< last pack first
 };
