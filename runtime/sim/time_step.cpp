@@ -114,6 +114,7 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
     report.gap = 0;
     report.finite = true;
     for (int i = 0; i < parts && report.finite && (last || report.gap <= options.gap_limit); ++i) {
+      if (i > 0) now_.swap(next_);
       const std::vector<Motion>& from = i == 0 ? plant.motion : now_;
       Outcome outcome = substep(plant, part, from, next_, report.gap);
       if (outcome == Outcome::TreeChanged) {
@@ -122,7 +123,6 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
         outcome = substep(plant, part, from, next_, report.gap);
       }
       report.finite = outcome == Outcome::Finite;
-      now_.swap(next_);
       ++report.solves;
     }
     report.gap_held = report.gap <= options.gap_limit;
@@ -131,7 +131,7 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
   }
 
   if (report.finite) {
-    plant.motion.swap(now_);
+    plant.motion.swap(next_);
   } else {
     for (Motion& m : plant.motion) m = {.position = m.position, .orientation = m.orientation};
   }
@@ -186,9 +186,20 @@ PlantStepper::Outcome PlantStepper::substep(const Plant& plant, const Substep& s
   eliminate(top);
 
   // Root to leaves: accelerations and the new state.
+  const auto fetch = [&](const EliminationOrder::Part& part) {
+    for (uint32_t p = part.first; p < part.last; ++p) {
+      for (const uint32_t i : order_.packs()[p].self) {
+        for (int at = 0; at < lanes::kMotionStride; at += 8) {
+          __builtin_prefetch(view.from + size_t{lanes::kMotionStride} * i + at);
+          __builtin_prefetch(view.to + size_t{lanes::kMotionStride} * i + at, 1);
+        }
+        __builtin_prefetch(&plant.particles[i].joint);
+      }
+    }
+  };
   lanes::AdvanceResult result = kernels_->advance(view, top.first, top.last);
   for (const EliminationOrder::Part& part : parts) {
-    order_.still_holds(plant.particles, from, part);
+    fetch(part);
     const lanes::AdvanceResult more = kernels_->advance(view, part.first, part.last);
     result.gap = std::max(result.gap, more.gap);
     result.finite = result.finite && more.finite;
