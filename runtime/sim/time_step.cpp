@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "runtime/sim/free_flight.h"
 #include "runtime/sim/generalized_alpha.h"
 #include "runtime/sim/joints.h"
 
@@ -132,6 +133,7 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
 
   if (report.finite) {
     plant.motion.swap(next_);
+    if (plant.anchors.empty() && transient.empty() && external.empty()) keep_angular_momentum(next_, plant);
   } else {
     for (Motion& m : plant.motion) m = {.position = m.position, .orientation = m.orientation};
   }
