@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "runtime/sim/joints.h"
-#include "runtime/sim/tree_solver.h"
 
 namespace liana {
 

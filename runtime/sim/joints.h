@@ -15,6 +15,8 @@
 
 namespace liana {
 
+using Vec6 = Eigen::Matrix<double, 6, 1>;  ///< translation and rotation
+
 /// Where a rigid body is and how it moves at the moment when a joint is looked at. World frame.
 struct BodyPose {
   Vec3 position = Vec3::Zero();

@@ -1,11 +1,88 @@
 #include "runtime/sim/time_step.h"
 
+#include <cstddef>
+
+#include "runtime/sim/free_flight.h"
 #include "runtime/sim/generalized_alpha.h"
+#include "runtime/sim/joints.h"
 
 namespace liana {
 namespace {
-const BodyPose kWorldPose;
-const Motion kWorld;
+
+// The kernels read these structures as rows of numbers.
+static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Quat) == 4 * sizeof(double));
+static_assert(sizeof(Particle) == lanes::kParticleStride * sizeof(double));
+static_assert(offsetof(Particle, half_length) == 1 * sizeof(double));
+static_assert(offsetof(Particle, mass) == 4 * sizeof(double));
+static_assert(offsetof(Particle, inertia) == 5 * sizeof(double));
+static_assert(offsetof(Particle, mass_damping) == 8 * sizeof(double));
+static_assert(offsetof(Particle, stiffness_damping) == 9 * sizeof(double));
+static_assert(offsetof(Particle, joint) == 10 * sizeof(double));
+static_assert(offsetof(Joint, on_self) == 3 * sizeof(double));
+static_assert(offsetof(Joint, rest) == 6 * sizeof(double));
+static_assert(offsetof(Joint, shear_stiffness) == 10 * sizeof(double));
+static_assert(offsetof(Joint, bend_stiffness) == 13 * sizeof(double));
+static_assert(offsetof(Joint, rest_force) == 16 * sizeof(double));
+static_assert(offsetof(Joint, rest_moment) == 19 * sizeof(double));
+static_assert(sizeof(Motion) == lanes::kMotionStride * sizeof(double));
+static_assert(offsetof(Motion, orientation) == 4 * sizeof(double));
+static_assert(offsetof(Motion, velocity) == 8 * sizeof(double));
+static_assert(offsetof(Motion, angular_velocity) == 11 * sizeof(double));
+static_assert(offsetof(Motion, acceleration) == 14 * sizeof(double));
+static_assert(offsetof(Motion, angular_acceleration) == 17 * sizeof(double));
+
+// Packs whose joints are looked at before they are eliminated: their records fit the first-level cache.
+constexpr size_t kPacksAtOnce = 8;
+
+const double* numbers(const void* structures) {
+  return static_cast<const double*>(structures);
+}
+
+// What a substep computes with and then forgets. One per thread: while plants are stepped one after the
+// other, it stays in the cache.
+struct Workspace {
+  std::vector<double> pose, block, record;  // see step_view.h
+
+  void prepare(const EliminationOrder& order) {
+    const auto grow = [](std::vector<double>& numbers, size_t size) {
+      if (numbers.size() < size) numbers.resize(size);
+    };
+    grow(pose, size_t{lanes::kPoseStride} * order.pose_slots());
+    grow(block, size_t{lanes::kBlockStride} * order.block_slots());
+    grow(record, size_t{4 * lanes::kRecordLanes} * order.packs().size());
+    // The world: identity, at rest. What it is handed is not looked at.
+    double* world = &pose[size_t{lanes::kPoseStride} * order.world_slot()];
+    std::fill_n(world, lanes::kPoseStride, 0.0);
+    world[7] = 1;
+    std::fill_n(block_of(order.world_slot()), lanes::kBlockStride, 0.0);
+    for (const EliminationOrder::Handover& h : order.handovers())
+      std::fill_n(block_of(h.from), lanes::kBlockStride, 0.0);
+  }
+  const double* pose_of(uint32_t slot) const { return &pose[size_t{lanes::kPoseStride} * slot]; }
+  double* block_of(uint32_t slot) { return &block[size_t{lanes::kBlockStride} * slot]; }
+};
+thread_local Workspace workspace;
+
+// A spring's force and stiffness into the block of its particle.
+void add_spring(const WorldSpring& spring, double position_rate, double velocity_rate, const double* pose,
+                double* block) {
+  using Row = Eigen::Map<const Vec3>;
+  const Vec3 lever = Eigen::Map<const Quat>(pose + 4) * spring.on_particle;
+  const Vec3 slip = Row(pose + 8) + Row(pose + 11).cross(lever) - spring.target_velocity;
+  const Vec3 force = -spring.stiffness * (Row(pose) + lever - spring.target) - spring.damping * slip;
+  const Mat3 S = position_rate * spring.stiffness + velocity_rate * spring.damping;
+  const Mat3 L = skew(lever), Q = L * S, R = Q * L.transpose();  // T(r)ᵀ [S 0; 0 0] T(r)
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column <= row; ++column) *block++ += S(row, column);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) *block++ += Q(row, column);
+    for (int column = 0; column <= row; ++column) *block++ += R(row, column);
+  }
+  const Vec3 torque = lever.cross(force);
+  for (int row = 0; row < 3; ++row) *block++ += force[row];
+  for (int row = 0; row < 3; ++row) *block++ += torque[row];
+}
+
 }  // namespace
 
 // Balanced at t + (1−α_f) h, with x_f = x̂ + k₁ a₁, v_f = v̂ + k₂ a₁ (x̂, v̂ the prediction with a₁ = 0):
@@ -22,7 +99,11 @@ struct PlantStepper::Substep {
 
 StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
                               std::span<const WorldSpring> transient, const StepOptions& options) noexcept {
-  reserve(plant.particles.size());
+  const size_t count = plant.particles.size();
+  order_.update(plant.particles, false);
+  now_.resize(count);
+  next_.resize(count);
+  sort_springs(plant, transient);
   StepReport report;
   report.calibrated = options.dt == plant.scheme.dt;
 
@@ -34,8 +115,15 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
     report.gap = 0;
     report.finite = true;
     for (int i = 0; i < parts && report.finite && (last || report.gap <= options.gap_limit); ++i) {
-      report.finite = substep(plant, part, i == 0 ? plant.motion : now_, next_, report.gap);
-      now_.swap(next_);
+      if (i > 0) now_.swap(next_);
+      const std::vector<Motion>& from = i == 0 ? plant.motion : now_;
+      Outcome outcome = substep(plant, part, from, next_, report.gap);
+      if (outcome == Outcome::TreeChanged) {
+        order_.update(plant.particles, true);
+        sort_springs(plant, transient);
+        outcome = substep(plant, part, from, next_, report.gap);
+      }
+      report.finite = outcome == Outcome::Finite;
       ++report.solves;
     }
     report.gap_held = report.gap <= options.gap_limit;
@@ -44,115 +132,117 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
   }
 
   if (report.finite) {
-    plant.motion.swap(now_);
+    plant.motion.swap(next_);
+    if (plant.anchors.empty() && transient.empty() && external.empty()) keep_angular_momentum(next_, plant);
   } else {
     for (Motion& m : plant.motion) m = {.position = m.position, .orientation = m.orientation};
   }
   return report;
 }
 
-bool PlantStepper::substep(const Plant& plant, const Substep& step, const std::vector<Motion>& from,
-                           std::vector<Motion>& to, double& gap) noexcept {
-  predict(plant, step, from);
-  add_springs(plant.anchors, step);
-  add_springs(step.transient, step);
-  eliminate(plant, step);
-  return advance(plant, step, from, to, gap);
-}
-
-// Poses at the moment of balance if a₁ were 0, and every particle's own block and load.
-void PlantStepper::predict(const Plant& plant, const Substep& step,
-                           const std::vector<Motion>& from) noexcept {
+PlantStepper::Outcome PlantStepper::substep(const Plant& plant, const Substep& step,
+                                            const std::vector<Motion>& from, std::vector<Motion>& to,
+                                            double& gap) noexcept {
+  workspace.prepare(order_);
   const auto& [alpha_m, alpha_f, gamma, beta] = step.method;
-  const double t = (1 - alpha_f) * step.h, t2 = t * step.h * (0.5 - beta), tv = t * (1 - gamma);
-  for (size_t i = 0; i < plant.particles.size(); ++i) {
-    const Particle& particle = plant.particles[i];
-    const Motion& m = from[i];
-    BodyPose& pose = pose_[i];
-    pose.position = m.position + t * m.velocity + t2 * m.acceleration;
-    pose.orientation = rotation_exp(t * m.angular_velocity + t2 * m.angular_acceleration) * m.orientation;
-    pose.velocity = m.velocity + tv * m.acceleration;
-    pose.angular_velocity = m.angular_velocity + tv * m.angular_acceleration;
+  const lanes::StepView view{
+      .particle = numbers(plant.particles.data()),
+      .from = numbers(from.data()),
+      .to = static_cast<double*>(static_cast<void*>(to.data())),
+      .pose = workspace.pose.data(),
+      .block = workspace.block.data(),
+      .record = workspace.record.data(),
+      .packs = order_.packs().data(),
+      .gravity = {step.gravity.x(), step.gravity.y(), step.gravity.z()},
+      .h = step.h,
+      .alpha_m = alpha_m,
+      .alpha_f = alpha_f,
+      .gamma = gamma,
+      .beta = beta,
+      .position_rate = step.position_rate,
+      .velocity_rate = step.velocity_rate,
+  };
+  const auto eliminate = [&](const EliminationOrder::Part& part) {
+    for (size_t i = part.first; i < part.last; i += kPacksAtOnce) {
+      const size_t end = std::min<size_t>(i + kPacksAtOnce, part.last);
+      kernels_->assemble(view, i, end);
+      kernels_->factor(view, i, end);
+    }
+  };
+  const std::span<const EliminationOrder::Part> parts = order_.parts();
+  const EliminationOrder::Part top = order_.top();
 
-    const Mat3 R = pose.orientation.toRotationMatrix();
-    const Mat3 J = R * particle.inertia.asDiagonal() * R.transpose();
-    const double d_M = particle.mass_damping, implicit = 1 - alpha_m + step.velocity_rate * d_M;
-    Vec3 force = particle.mass * (step.gravity - alpha_m * m.acceleration - d_M * pose.velocity);
-    Vec3 torque = -(J * (alpha_m * m.angular_acceleration + d_M * pose.angular_velocity));
-    if (i < step.external.size()) force += step.external[i].force, torque += step.external[i].torque;
-    solver_.reset(i, implicit * particle.mass, implicit * J, force, torque);
+  // Leaves to root: poses at the moment of balance, loads, joints, every particle out of the system.
+  if (!order_.still_holds(plant.particles, from, top)) return Outcome::TreeChanged;
+  kernels_->predict(view, top.first, top.last);
+  add_loads(step, top, static_cast<uint32_t>(parts.size()));
+  for (uint32_t k = 0; k < parts.size(); ++k) {
+    if (!order_.still_holds(plant.particles, from, parts[k])) return Outcome::TreeChanged;
+    kernels_->predict(view, parts[k].first, parts[k].last);
+    add_loads(step, parts[k], k);
+    eliminate(parts[k]);
+  }
+  for (const EliminationOrder::Handover& h : order_.handovers())
+    for (int i = 0; i < lanes::kBlockStride; ++i)
+      workspace.block_of(h.to)[i] += workspace.block_of(h.from)[i];
+  eliminate(top);
+
+  // Root to leaves: accelerations and the new state.
+  const auto fetch = [&](const EliminationOrder::Part& part) {
+    for (uint32_t p = part.first; p < part.last; ++p) {
+      for (const uint32_t i : order_.packs()[p].self) {
+        for (int at = 0; at < lanes::kMotionStride; at += 8) {
+          __builtin_prefetch(view.from + size_t{lanes::kMotionStride} * i + at);
+          __builtin_prefetch(view.to + size_t{lanes::kMotionStride} * i + at, 1);
+        }
+        __builtin_prefetch(&plant.particles[i].joint);
+      }
+    }
+  };
+  lanes::AdvanceResult result = kernels_->advance(view, top.first, top.last);
+  for (const EliminationOrder::Part& part : parts) {
+    fetch(part);
+    const lanes::AdvanceResult more = kernels_->advance(view, part.first, part.last);
+    result.gap = std::max(result.gap, more.gap);
+    result.finite = result.finite && more.finite;
+  }
+  gap = std::max(gap, result.gap);
+  return result.finite ? Outcome::Finite : Outcome::NotFinite;
+}
+
+void PlantStepper::add_loads(const Substep& step, const EliminationOrder::Part& part,
+                             uint32_t number) noexcept {
+  if (!step.external.empty()) {
+    for (uint32_t p = part.first; p < part.last; ++p) {
+      const lanes::Pack& pack = order_.packs()[p];
+      for (uint32_t k = 0; k < pack.count; ++k) {
+        if (pack.self[k] >= step.external.size()) continue;
+        Eigen::Map<Vec6> load(workspace.block_of(pack.slot[k]) + lanes::kBlockLoad);
+        load.head<3>() += step.external[pack.self[k]].force;
+        load.tail<3>() += step.external[pack.self[k]].torque;
+      }
+    }
+  }
+  for (uint32_t i = first_spring_[number]; i < first_spring_[number + 1]; ++i) {
+    const uint32_t slot = order_.slot_of(springs_[i]->particle);
+    add_spring(*springs_[i], step.position_rate, step.velocity_rate, workspace.pose_of(slot),
+               workspace.block_of(slot));
   }
 }
 
-void PlantStepper::add_springs(std::span<const WorldSpring> springs, const Substep& step) noexcept {
-  for (const WorldSpring& spring : springs) {
-    const size_t i = spring.particle.index();
-    const BodyPose& pose = pose_[i];
-    const Vec3 lever = pose.orientation * spring.on_particle;
-    const Vec3 slip = pose.velocity + pose.angular_velocity.cross(lever) - spring.target_velocity;
-    const Vec3 force = -spring.stiffness * (pose.position + lever - spring.target) - spring.damping * slip;
-    solver_.add_point(i, lever, step.position_rate * spring.stiffness + step.velocity_rate * spring.damping);
-    solver_.add_load(i, force, lever.cross(force));
-  }
-}
-
-// Leaves to root: what each joint exerts, then the particle out of the system.
-void PlantStepper::eliminate(const Plant& plant, const Substep& step) noexcept {
-  for (size_t i = plant.particles.size(); i-- > 0;) {
-    const Particle& particle = plant.particles[i];
-    const bool root = !particle.parent.valid();
-    const BodyPose& parent = root ? kWorldPose : pose_[particle.parent.index()];
-    const JointStrain strain = joint_strain(particle.joint, parent, pose_[i]);
-    const JointAction action =
-        joint_action(particle.joint, particle.stiffness_damping, strain, parent, pose_[i]);
-    solver_.add_load(i, action.force, strain.from_child.cross(action.force) + action.moment);
-    if (!root)
-      solver_.add_load(particle.parent.index(), -action.force,
-                       -strain.from_parent.cross(action.force) - action.moment);
-    const double implicit = step.position_rate + step.velocity_rate * particle.stiffness_damping;
-    solver_.eliminate(
-        i, particle.parent.value,
-        {strain.from_child, strain.from_parent, implicit * action.shear, implicit * action.bend});
-  }
-}
-
-// Root to leaves: accelerations, the new state, its largest gap. False when anything is not finite.
-bool PlantStepper::advance(const Plant& plant, const Substep& step, const std::vector<Motion>& from,
-                           std::vector<Motion>& to, double& gap) noexcept {
-  const auto& [alpha_m, alpha_f, gamma, beta] = step.method;
-  const double h = step.h, h2 = h * h;
-  double sum = 0;  // finite exactly when every number added is
-  for (size_t i = 0; i < plant.particles.size(); ++i) {
-    const Particle& particle = plant.particles[i];
-    const Motion& m = from[i];
-    const Vec6& a1 = solver_.substitute(i);
-    Motion& n = to[i];
-    n.acceleration = a1.head<3>();
-    n.angular_acceleration = a1.tail<3>();
-    n.position = m.position + h * m.velocity + h2 * ((0.5 - beta) * m.acceleration + beta * n.acceleration);
-    const Vec3 turn =
-        h * m.angular_velocity + h2 * ((0.5 - beta) * m.angular_acceleration + beta * n.angular_acceleration);
-    n.orientation = (rotation_exp(turn) * m.orientation).normalized();
-    n.velocity = m.velocity + h * ((1 - gamma) * m.acceleration + gamma * n.acceleration);
-    n.angular_velocity =
-        m.angular_velocity + h * ((1 - gamma) * m.angular_acceleration + gamma * n.angular_acceleration);
-
-    const Motion& parent = particle.parent.valid() ? to[particle.parent.index()] : kWorld;
-    const double open =
-        joint_gap(particle.joint, parent.position, parent.orientation, n.position, n.orientation);
-    const bool free = particle.joint.shear_stiffness.isZero(0);
-    if (!free) gap = std::max(gap, open / (2 * particle.half_length));
-    sum += open + n.velocity.sum() + n.angular_velocity.sum() + n.orientation.w();
-  }
-  return std::isfinite(sum);
-}
-
-void PlantStepper::reserve(size_t particles) {
-  if (solver_.size() == particles) return;
-  solver_.resize(particles);
-  pose_.resize(particles);
-  now_.resize(particles);
-  next_.resize(particles);
+// In the order given, part by part.
+void PlantStepper::sort_springs(const Plant& plant, std::span<const WorldSpring> transient) noexcept {
+  const std::span<const WorldSpring> lists[] = {plant.anchors, transient};
+  first_spring_.assign(order_.parts().size() + 2, 0);
+  for (const auto& list : lists)
+    for (const WorldSpring& spring : list) ++first_spring_[order_.part_of(spring.particle) + 1];
+  for (size_t k = 1; k < first_spring_.size(); ++k) first_spring_[k] += first_spring_[k - 1];
+  springs_.resize(first_spring_.back());
+  for (const auto& list : lists)
+    for (const WorldSpring& spring : list)
+      springs_[first_spring_[order_.part_of(spring.particle)]++] = &spring;
+  for (size_t k = first_spring_.size() - 1; k > 0; --k) first_spring_[k] = first_spring_[k - 1];
+  first_spring_[0] = 0;
 }
 
 }  // namespace liana

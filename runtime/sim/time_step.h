@@ -8,9 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "runtime/sim/joints.h"
+#include "runtime/sim/elimination_order.h"
 #include "runtime/sim/plant.h"
-#include "runtime/sim/tree_solver.h"
 
 namespace liana {
 
@@ -36,8 +35,9 @@ struct StepReport {
   bool calibrated = true;  ///< false when dt is not the one that the plant was calibrated for
 };
 
-/// Steps one plant. Owns the working memory: keep one per plant. Steps allocate nothing unless particles were
-/// added since the last one. Deterministic; the same on every thread.
+/// Steps one plant. Owns the working memory: keep one per plant. Steps allocate nothing unless the plant's
+/// tree changed since the last one, which is noticed. Deterministic; the same bits on every thread and every
+/// processor.
 class PlantStepper {
  public:
   /// external: one Wrench per particle, or empty. transient: contacts and grabs of this step, added to
@@ -45,23 +45,23 @@ class PlantStepper {
   StepReport step(Plant& plant, std::span<const Wrench> external, std::span<const WorldSpring> transient,
                   const StepOptions& options) noexcept;
 
-  /// Makes room for the plant's particles; step() does so itself when their number changed.
-  void reserve(size_t particles);
+  /// What the substep runs on; the fastest that this processor has. For tests and benchmarks.
+  void use(const lanes::Kernels& kernels) { kernels_ = &kernels; }
 
  private:
   struct Substep;  // the numbers and loads that one substep is taken with
+  enum class Outcome { Finite, NotFinite, TreeChanged };
 
-  bool substep(const Plant& plant, const Substep& step, const std::vector<Motion>& from,
-               std::vector<Motion>& to, double& gap) noexcept;
-  void predict(const Plant& plant, const Substep& step, const std::vector<Motion>& from) noexcept;
-  void add_springs(std::span<const WorldSpring> springs, const Substep& step) noexcept;
-  void eliminate(const Plant& plant, const Substep& step) noexcept;
-  bool advance(const Plant& plant, const Substep& step, const std::vector<Motion>& from,
-               std::vector<Motion>& to, double& gap) noexcept;
+  Outcome substep(const Plant& plant, const Substep& step, const std::vector<Motion>& from,
+                  std::vector<Motion>& to, double& gap) noexcept;
+  void sort_springs(const Plant& plant, std::span<const WorldSpring> transient) noexcept;
+  void add_loads(const Substep& step, const EliminationOrder::Part& part, uint32_t number) noexcept;
 
-  TreeSolver solver_;
-  std::vector<BodyPose> pose_;      // at the moment where forces are balanced, between two substeps
-  std::vector<Motion> now_, next_;  // the plant's own state stays untouched until a step is accepted
+  const lanes::Kernels* kernels_ = &lanes::best_kernels();
+  EliminationOrder order_;
+  std::vector<const WorldSpring*> springs_;  // anchors and transient ones, by part
+  std::vector<uint32_t> first_spring_;       // of each part and the top
+  std::vector<Motion> now_, next_;           // the plant's own state stays untouched until a step is accepted
 };
 
 }  // namespace liana

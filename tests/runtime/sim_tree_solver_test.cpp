@@ -3,7 +3,7 @@
 #include <random>
 
 #include "runtime/sim/rotation.h"
-#include "runtime/sim/tree_solver.h"
+#include "tests/support/tree_solver.h"
 
 namespace liana {
 namespace {

@@ -1,4 +1,4 @@
-#include "runtime/sim/tree_solver.h"
+#include "tests/support/tree_solver.h"
 
 namespace liana {
 namespace {

@@ -14,11 +14,10 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "mesher/base/types.h"
+#include "runtime/sim/joints.h"
 
 namespace liana {
 
-using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 /// The joint of a node to its parent, as the solver sees it. World axes.

@@ -1,0 +1,10 @@
+#include "runtime/sim/lanes/step_view.h"
+
+namespace liana::lanes {
+
+const Kernels& best_kernels() {
+  static const Kernels& best = avx2_kernels() ? *avx2_kernels() : portable_kernels();
+  return best;
+}
+
+}  // namespace liana::lanes
