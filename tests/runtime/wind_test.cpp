@@ -2,11 +2,13 @@
 
 #include "mesher/base/error.h"
 #include "runtime/sim/collision/box_mesh.h"
+#include "runtime/sim/plant_from_bake.h"
 #include "runtime/sim/rod_section.h"
 #include "runtime/sim/time_step.h"
 #include "runtime/wind/sheltered_wind.h"
 #include "runtime/wind/steady_gust_wind.h"
 #include "runtime/wind/wind_forces.h"
+#include "tests/support/synthetic_bake.h"
 
 namespace liana {
 namespace {
@@ -58,6 +60,42 @@ TEST(WindForces, DragIsQuadraticThenLinearOnceTheBladeFolds) {
   EXPECT_NEAR(drag(plant, {0, 0, -2}).z(), -drag(plant, {0, 0, 2}).z(), 1e-15);
   EXPECT_NEAR(drag(plant, {0, 0, 3}).z() / drag(plant, {0, 0, 1.5}).z(), 4, 1e-9);
   EXPECT_NEAR(drag(plant, {0, 0, 16}).z() / drag(plant, {0, 0, 8}).z(), 2, 1e-9);
+}
+
+TEST(WindForces, ReconfigurationFollowsVogelsExponent) {
+  const Plant plant = loose_leaf(3e-4);
+  for (const double exponent : {-1.0, -0.5, 0.0}) {
+    DragOptions options;
+    options.leaf_vogel_exponent = exponent;
+    const double slow = drag_factor(plant, ParticleId(0), {0, 0, 8}, options) * 8,
+                 fast = drag_factor(plant, ParticleId(0), {0, 0, 16}, options) * 16;
+    EXPECT_NEAR(std::log2(fast / slow), 2 + exponent, 1e-9);
+  }
+}
+
+TEST(WindForces, LivelinessIsTheReciprocalOfMassScaling) {
+  // [Wang17] §3.2: at a given frequency a rod of α_m times the mass is α_m times as stiff (Eq. 10), so the same wind
+  // bends it 1/α_m as far. The wind's force is the same; by 5 % of 0.02 m / 1 m its own bending changes that.
+  double bend[2];
+  for (int i = 0; i < 2; ++i) {
+    Bake bake = test::rod_bake({.length = 1, .radius = 0.01, .frequency = 3, .damping_factor = 0.3});
+    const double scaling = i == 0 ? 1 : 3;
+    BakedDomain& rod = bake.domains[0];
+    rod.mass *= scaling, rod.density *= scaling, rod.youngs_modulus *= scaling;
+    rod.material.mass_scaling = scaling;
+    Plant plant = make_plant(bake);
+    const Vec3 tip = plant.motion.back().position;
+    PlantStepper stepper;
+    std::vector<WorldSpring> springs;
+    for (int step = 0; step < 400; ++step) {
+      springs.clear();
+      add_wind(plant, EvenWind({8, 0, 0}), 0, {}, springs);
+      stepper.step(plant, {}, springs, {});
+    }
+    bend[i] = (plant.motion.back().position - tip).x();
+  }
+  EXPECT_GT(bend[1], 1e-4);
+  EXPECT_NEAR(bend[0] / bend[1], 3, 0.06);
 }
 
 TEST(WindForces, MassScalingDividesTheAcceleration) {
