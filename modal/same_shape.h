@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "mesher/base/mesh.h"
-#include "mesher/base/taper_law.h"
 #include "mesher/base/similarity.h"
+#include "mesher/base/taper_law.h"
 #include "modal/carried_mass.h"
 
 namespace liana {

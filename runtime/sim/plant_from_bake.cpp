@@ -62,11 +62,20 @@ void check(const BakedDomain& domain) {
         "bake the plant again");
 }
 
+// Uniform for a group that the law does not know, as in bakes that are no file's.
+TaperLaw taper_of(const SpeciesLaw& law, const std::string& group) {
+  try {
+    return law.group(group).taper;
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 // Appends one domain as a chain, in the frame of the bake.
 void append_chain(Plant& plant, const Bake& bake, DomainId id, double spacing) {
   const BakedDomain& domain = bake.domains[id.index()];
   check(domain);
-  const Centreline line(domain, bake.law.groups.empty() ? TaperLaw() : bake.law.group(domain.group).taper);
+  const Centreline line(domain, taper_of(bake.law, domain.group));
   const size_t n = particle_count(domain, line, spacing);
   const double h = line.length() / static_cast<double>(n);
   double shares = 0;
