@@ -8,6 +8,7 @@
 #include <map>
 
 #include "mesher/base/parallel.h"
+#include "modal/taper_field.h"
 
 namespace liana {
 namespace {
@@ -65,7 +66,9 @@ DomainModes solve(const Solid& solid, const ElasticMaterial& material, const Dom
     const TetMesh tets = tetrahedralize(*solid.surface, solid.is_root, options.tets);
     seconds.tets += seconds_since(start);
     start = std::chrono::steady_clock::now();
-    Modes modes = lowest_modes(tets, material, solid.carried, options.modes);
+    std::vector<ElementScaling> scaling;
+    if (!solid.taper.uniform()) scaling = tapered(tets, solid.taper);
+    Modes modes = lowest_modes(tets, material, solid.carried, options.modes, scaling);
     seconds.modes += seconds_since(start);
     result.frequencies = std::move(modes.frequencies);
     result.tip_direction = std::move(modes.tip_direction);

@@ -84,7 +84,7 @@ void groups(Writer& stream, const std::map<std::string, GroupLaw>& laws) {
 }
 
 void groups(Reader& stream, std::map<std::string, GroupLaw>& laws) {
-  constexpr size_t kLeastBytes = 4 + (5 + 1) * 8 + 1 + 2 * 8 + 3 * 4;
+  constexpr size_t kLeastBytes = 4 + (5 + 4) * 8 + 1 + 2 * 8 + 3 * 4;
   for (uint32_t left = stream.in.count(kLeastBytes); left > 0; --left) {
     const std::string name = stream.in.text();
     group(stream, laws[name]);

@@ -35,10 +35,13 @@ void for_each_number_of_group(Group& group, Visit&& visit) {
   visit(NumberRange{"epsilon2", "", -4, 4}, group.epsilon2);
 }
 
-/// visit(NumberRange, double&) for what a group may leave out.
+/// visit(NumberRange, double&) for what a group may leave out: the median model's ν, and Eq. 11.
 template <class Group, class Visit>
 void for_each_optional_number_of_group(Group& group, Visit&& visit) {
   visit(NumberRange{"median_frequency", "Hz", 0, 1e3}, group.median_frequency);
+  visit(NumberRange{"s_max", "", 1e-3, 1e3}, group.taper.root_scaling);
+  visit(NumberRange{"s_min", "", 1e-3, 1e3}, group.taper.tip_scaling);
+  visit(NumberRange{"epsilon3", "", 0, 100}, group.taper.epsilon3);
 }
 
 /// visit(NumberRange, double&) for what the models beside the power law need; all may be left out.

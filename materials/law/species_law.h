@@ -10,6 +10,7 @@
 #include <string>
 
 #include "mesher/base/elastic_material.h"
+#include "mesher/base/taper_law.h"
 #include "mesher/base/types.h"
 
 namespace liana {
@@ -49,6 +50,7 @@ struct GroupLaw {
   DampingLaw damping = {};
   double median_frequency = 0;  ///< ν_med, Hz, of the median model; 0: what Eq. 8 gives at the median length
   GroupMatch match = {};
+  TaperLaw taper = {};  ///< of stiffness and density along each domain; uniform unless given
 };
 
 /// What the law says of one domain.

@@ -24,7 +24,8 @@ struct BakeOptions {
 
 /// Wall clock, s. Tets and modes are made in one go; their time is split as the workers spent it.
 struct StageSeconds {
-  double read = 0;  ///< of the plant file; the caller's to fill
+  double read = 0, write = 0;  ///< of the plant and of the bake; the caller's to fill
+  double cache = 0;            ///< its file, in and out; the caller's to fill
   double surface = 0, tets = 0, modal = 0, laws = 0, total = 0;
 };
 

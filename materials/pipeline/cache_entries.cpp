@@ -12,13 +12,18 @@ namespace {
 
 enum class Content : uint8_t { Copy, Solid };
 
+template <class T>
+constexpr bool kGrows = requires(T& list) {
+  list.push_back(list[0]);
+};
+
 /// Bytes of plain numbers, as they lie in memory.
 class Packer {
  public:
   template <class T>
   Packer& add(const T& value) {
     if constexpr (requires { value.data(), value.size(); }) {
-      if constexpr (requires { value.resize(0); }) writer_.number(static_cast<uint32_t>(value.size()));
+      if constexpr (kGrows<T>) writer_.number(static_cast<uint32_t>(value.size()));
       for (const auto& element : value) add(element);
     } else {
       static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
@@ -39,7 +44,7 @@ class Unpacker {
   template <class T>
   Unpacker& get(T& value) {
     if constexpr (requires { value.data(), value.size(); }) {
-      if constexpr (requires { value.push_back(value[0]); }) value.resize(reader_.count(1));
+      if constexpr (kGrows<T>) value.resize(reader_.count(1));
       for (auto& element : value) get(element);
     } else {
       value = reader_.number<T>();
@@ -88,7 +93,12 @@ std::vector<uint64_t> geometry_keys(const SegmentedPlant& plant) {
 std::string encode(const CachedCopy& copy) {
   const auto& [rotation, scale, translation] = copy.similarity;
   Packer packer;
-  packer.add(Content::Copy).add(copy.source_key).add(rotation.reshaped()).add(scale).add(translation);
+  const Eigen::Map<const Eigen::Matrix<double, 9, 1>> turn(rotation.data());
+  packer.add(Content::Copy)
+      .add(copy.source_key)
+      .add(Eigen::Matrix<double, 9, 1>(turn))
+      .add(scale)
+      .add(translation);
   return packer.bytes();
 }
 
@@ -130,13 +140,15 @@ std::variant<CachedCopy, SolidDomain> decode_geometry(std::string_view bytes) {
 
 uint64_t modes_key(uint64_t geometry_key, const Solid& solid, const ElasticMaterial& material,
                    const DomainModesOptions& options) {
-  const auto& [surface, is_root, carried] = solid;
+  const auto& [surface, is_root, carried, taper] = solid;
+  const auto& [root_scaling, tip_scaling, epsilon3] = taper;
   const auto& [youngs_modulus, density, poisson_ratio] = material;
   const auto& [mode_options, tets, share, threads] = options;
   const auto& [element, modes] = mode_options;
   const auto& [radius_edge_ratio, min_dihedral] = tets;
   KeyHash key(geometry_key);
   key.add(poisson_ratio, element, modes, radius_edge_ratio, min_dihedral, share);
+  if (!taper.uniform()) key.add(root_scaling, tip_scaling, epsilon3);
   for (const auto& [position, mass] : carried)
     key.add(position.x(), position.y(), position.z(), rounded(mass / density));
   return key.value();

@@ -29,7 +29,7 @@ bool Stages::find_modes() {
   const ElasticMaterial& material = species_.default_material;
   const DomainModesOptions mode_options = this->mode_options();
   const auto solid_of = [&](const Piece& piece) {
-    return Solid{&piece.solid.surface, piece.solid.is_root, piece.carried};
+    return Solid{&piece.solid.surface, piece.solid.is_root, piece.carried, piece.taper};
   };
 
   std::vector<uint64_t> keys(pieces_.size(), 0);

@@ -20,6 +20,7 @@ Stages::Stages(const SegmentedPlant& plant, const SpeciesLaw& species, const Bak
       options_(options),
       progress_(progress),
       pieces_(plant.domains.size()) {
+  for (size_t i = 0; i < pieces_.size(); ++i) pieces_[i].instance = {i, {}};
   if (plant.domains.empty())
     throw Error(Error::Kind::Input, plant.name + ": there is no branch or leaf in it",
                 "every domain is one mesh node");
@@ -54,13 +55,17 @@ DomainId Stages::parent_of(DomainId domain) const {
   return parent;
 }
 
+double Stages::weighed_volume(const Piece& piece) const {
+  return mean_taper(piece.solid.centreline, piece.taper) * piece.solid.volume;
+}
+
 double Stages::own_mass(const Piece& piece) const {
-  return piece.material.mass_scaling * species_.default_material.density * piece.solid.volume;
+  return piece.material.mass_scaling * species_.default_material.density * weighed_volume(piece);
 }
 
 void Stages::carry_descendants() {
   for (Piece& piece : pieces_)
-    piece.carried.clear(), piece.subtree_volume = piece.material.mass_scaling * piece.solid.volume;
+    piece.carried.clear(), piece.subtree_volume = piece.material.mass_scaling * weighed_volume(piece);
   for (size_t index = pieces_.size(); index-- > 0;) {  // children before parents
     const DomainId id(index), parent = parent_of(id);
     if (!is_in(id) || !parent.valid()) continue;

@@ -37,6 +37,7 @@ class Stages {
     uint64_t geometry_key = 0;  ///< in the cache
     bool from_cache = false;    ///< the solid
     DomainMaterial material{};
+    TaperLaw taper;
     double subtree_volume = 0;  ///< m³, Σ α_m V: its own and all its descendants', as the law scales them
     std::vector<CarriedMass> carried;  ///< as the domain's default solve carries it: divided by its α_m
     DomainModes modes;                 ///< solved_as: index of a piece
@@ -61,6 +62,8 @@ class Stages {
 
   /// The nearest ancestor still in; invalid when there is none.
   DomainId parent_of(DomainId domain) const;
+  /// m³: its own, by the mean of [Wang17] Eq. 11 along it.
+  double weighed_volume(const Piece& piece) const;
   double own_mass(const Piece& piece) const;
   void choose_frequencies();  ///< by another model than the power law
   bool is_in(DomainId domain) const { return pieces_[domain.index()].failure.empty(); }

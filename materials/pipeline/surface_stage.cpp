@@ -20,7 +20,9 @@ void Stages::make_surfaces() {
       Piece& piece = pieces_[indices[k]];
       try {
         (this->*work)(indices[k]);
-        piece.material = evaluate(species_.group(groups_[indices[k]]), piece.solid.length);
+        const GroupLaw& law = species_.group(groups_[indices[k]]);
+        piece.material = evaluate(law, piece.solid.length);
+        piece.taper = law.taper;
       } catch (const Error& error) {
         if (error.kind != Error::Kind::Input) throw;
         piece.failure = error.what();

@@ -187,7 +187,8 @@ uint64_t load_gltf_bytes(const std::string& bytes, const fs::path& path, tinyglt
   return folder.hash;
 }
 
-Mesh gltf_mesh(const tinygltf::Model& model, int mesh, const std::string& where, std::vector<int>* materials) {
+Mesh gltf_mesh(const tinygltf::Model& model, int mesh, const std::string& where,
+               std::vector<int>* materials) {
   if (mesh < 0 || size_t(mesh) >= model.meshes.size())
     throw Error(Error::Kind::Input, fmt::format("{}: names mesh {}, which does not exist", where, mesh),
                 kExportAgain);

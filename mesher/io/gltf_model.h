@@ -23,8 +23,8 @@ uint64_t load_gltf(const std::filesystem::path& path, tinygltf::Model& model);
 uint64_t load_gltf_bytes(const std::string& bytes, const std::filesystem::path& path, tinygltf::Model& model);
 
 /// All triangles of a mesh, as stored (not welded). `where` names file and node in messages.
-/// `materials`, if given, takes the material of every triangle (-1: none). Throws Error{Input} for anything but
-/// finite float positions and triangles with valid indices.
+/// `materials`, if given, takes the material of every triangle (-1: none). Throws Error{Input} for anything
+/// but finite float positions and triangles with valid indices.
 Mesh gltf_mesh(const tinygltf::Model& model, int mesh, const std::string& where,
                std::vector<int>* materials = nullptr);
 

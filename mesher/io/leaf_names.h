@@ -5,8 +5,8 @@
 
 namespace liana {
 
-/// "leaf", "leaves", "blade", "petal", "foliage", "frond", "needle" or "flower", any case, as a whole word of the
-/// name or at its start ("Leaf.012").
+/// "leaf", "leaves", "blade", "petal", "foliage", "frond", "needle" or "flower", any case, as a whole word of
+/// the name or at its start ("Leaf.012").
 bool named_as_leaf(const std::string& name);
 
 /// "bark", "trunk", "branch", "stem", "twig", "wood" or "shoot", in the same way.

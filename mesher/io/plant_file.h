@@ -21,8 +21,8 @@ struct GltfPlant {
   uint64_t source_hash = 0;
 };
 
-/// A file is segmented when it says so (extras.liana), when meshes hang below meshes and at least half of them
-/// are one connected surface, or when it is a single surface. `scale`: metres per unit of the file;
+/// A file is segmented when it says so (extras.liana), when meshes hang below meshes and at least half of
+/// them are one connected surface, or when it is a single surface. `scale`: metres per unit of the file;
 /// `ignore_hierarchy`: take any file as one merged mesh. Throws as read_plant.
 GltfPlant read_gltf_plant(const std::string& bytes, const std::filesystem::path& path, double scale = 1,
                           bool ignore_hierarchy = false);

@@ -97,7 +97,8 @@ Mesh world_mesh(const tinygltf::Model& model, const GltfNode& node, double scale
   return mesh;
 }
 
-Mesh world_surface(const tinygltf::Model& model, const GltfNode& node, double scale, const std::string& where) {
+Mesh world_surface(const tinygltf::Model& model, const GltfNode& node, double scale,
+                   const std::string& where) {
   Mesh welded = weld(world_mesh(model, node, scale, where));
   if (!(surface_area(welded) > 1e-18))
     throw Error(Error::Kind::Input, where + ": its surface has no area",
@@ -112,7 +113,8 @@ TriangleSoup merged(const tinygltf::Model& model, const std::vector<GltfNode>& n
   for (const int index : domain_nodes(nodes, file)) {
     const GltfNode& node = nodes[index];
     std::vector<int> materials;
-    const Mesh mesh = world_mesh(model, node, scale, fmt::format("{}: node '{}'", file, node.name), &materials);
+    const Mesh mesh =
+        world_mesh(model, node, scale, fmt::format("{}: node '{}'", file, node.name), &materials);
     const auto first = static_cast<uint32_t>(soup.positions.size());
     soup.positions.insert(soup.positions.end(), mesh.positions.begin(), mesh.positions.end());
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -134,7 +136,8 @@ TriangleSoup merged(const tinygltf::Model& model, const std::vector<GltfNode>& n
 bool is_one_shell(const tinygltf::Model& model, const GltfNode& node, const std::string& file) {
   uint32_t parts = 0;
   connected_parts(
-      find_adjacency(weld(gltf_mesh(model, node.mesh, fmt::format("{}: node '{}'", file, node.name)))), &parts);
+      find_adjacency(weld(gltf_mesh(model, node.mesh, fmt::format("{}: node '{}'", file, node.name)))),
+      &parts);
   return parts == 1;
 }
 

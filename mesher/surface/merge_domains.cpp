@@ -16,7 +16,8 @@ class Merging {
   Merging(const SegmentedPlant& plant, int level) : plant_(plant), part_of_(plant.domains.size()) {
     for (size_t i = 0; i < plant.domains.size(); ++i) {
       const Domain& domain = plant.domains[i];
-      const bool merges = domain.kind == DomainKind::Branch && domain.level > level && domain.parent.valid() &&
+      const bool merges = domain.kind == DomainKind::Branch && domain.level > level &&
+                          domain.parent.valid() &&
                           plant.domains[domain.parent.index()].kind == DomainKind::Branch;
       part_of_[i] = merges ? part_of_[domain.parent.index()] : DomainId(i);
     }
@@ -88,7 +89,8 @@ MergedPlant merge_below(const SegmentedPlant& plant, int level, unsigned threads
     }
   });
 
-  MergedPlant result{{plant.name, {}, plant.source_hash}, std::vector<DomainId>(plant.domains.size()), {}};
+  MergedPlant result{{plant.name, {}, {}, plant.source_hash}, std::vector<DomainId>(plant.domains.size())};
+  std::vector<std::string>& notes = result.plant.notes;
   size_t merged = 0;
   for (size_t i = 0; i < plant.domains.size(); ++i) {
     const DomainId keeper = merging.part_of()[i];
@@ -106,14 +108,13 @@ MergedPlant merge_below(const SegmentedPlant& plant, int level, unsigned threads
     }
     result.plant.domains.push_back(std::move(domain));
     if (wanted[i] != keeper)
-      result.notes.push_back(
-          fmt::format("'{}' shares no volume with what it grows on: it stays a domain of its own",
-                      plant.domains[i].name));
+      notes.push_back(fmt::format("'{}' shares no volume with what it grows on: it stays a domain of its own",
+                                  plant.domains[i].name));
   }
-  result.notes.insert(
-      result.notes.begin(),
-      fmt::format("merged below level {}: {} branches became part of another, {} domains are left", level,
-                  merged, result.plant.domains.size()));
+  notes.insert(notes.begin(),
+               fmt::format("merged below level {}: {} branches became part of another, {} domains are left",
+                           level, merged, result.plant.domains.size()));
+  notes.insert(notes.begin(), plant.notes.begin(), plant.notes.end());
   return result;
 }
 

@@ -10,9 +10,8 @@
 namespace liana {
 
 struct MergedPlant {
-  SegmentedPlant plant;
-  std::vector<DomainId> became;    ///< per domain before: the one it is now, or is a part of
-  std::vector<std::string> notes;  ///< how many became one, and by name what could not
+  SegmentedPlant plant;          ///< its notes also say how many became one, and by name what could not
+  std::vector<DomainId> became;  ///< per domain before: the one it is now, or is a part of
 };
 
 /// Every branch of `level` and all branches that grow on it become one domain: the union of their solids, so

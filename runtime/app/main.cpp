@@ -55,6 +55,7 @@ int main(int argc, char** argv) {
   int exit_code = liana::kSuccess;
   liana::add_bake_verb(app, exit_code);
   liana::add_inspect_verb(app, exit_code);
+  liana::add_infer_verb(app, exit_code);
   liana::add_verify_verb(app, exit_code);
   liana::add_simulate_verb(app, exit_code);
   liana::add_edit_verb(app, exit_code);
@@ -70,6 +71,10 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     complain(std::string("stopped by a fault of its own: ") + error.what(),
              "report it with the command and the file");
+    return liana::kInputError;
+  }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
+    complain("what it has to say cannot be written", "check where its output goes to");
     return liana::kInputError;
   }
   return exit_code;

@@ -28,6 +28,7 @@ struct SimulateArguments {
   double video_seconds = 8, sway_seconds = 4;
   std::vector<int> size = {1280, 720}, video_size = {854, 480};
   unsigned threads = 0;
+  bool smooth_video = false;
 };
 
 constexpr double kFrameRate = 25;  // per second of video
@@ -120,6 +121,7 @@ int simulate(const SimulateArguments& arguments) {
   FrameOptions video_frame;
   video_frame.width = arguments.video_size[0] / 2 * 2;
   video_frame.height = arguments.video_size[1] / 2 * 2;
+  if (arguments.smooth_video) video_frame.samples = 4;
   if (!arguments.mp4.empty()) video.emplace(arguments.mp4, video_frame.width, video_frame.height, kFrameRate);
   Film film(arguments, steps, scene.time_step);
   const Camera camera = world.camera();
@@ -170,6 +172,7 @@ void add_simulate_verb(CLI::App& app, int& exit_code) {
       ->expected(2)->check(CLI::Range(16, 8192));
   verb->add_option("--video-size", arguments->video_size, "Width and height of the video [854 480]")
       ->expected(2)->check(CLI::Range(16, 4096));
+  verb->add_flag("--smooth-video", arguments->smooth_video, "Smooth edges in the video, as a camera sees them (slower)");
   verb->add_option("--export", arguments->glb, "Write the end as glTF (.glb)");
   verb->add_option("--report", arguments->report, "Write counts, state hash and timings as JSON");
   verb->add_option("--threads", arguments->threads, "Threads to use [all cores]; the result does not depend on it")

@@ -69,6 +69,16 @@ ScenePlant read_plant_entry(const TomlTable& table) {
   return plant;
 }
 
+ScenePluck read_pluck(const TomlTable& table, size_t plants) {
+  constexpr double kFastest = 100;  // m/s
+  if (plants == 0) table.fail("plant", "is none: the scene has no [[plant]] to pluck", "add [[plant]] bake = \"...\"");
+  ScenePluck pluck{static_cast<size_t>(table.integer_or("plant", 0, 0, static_cast<int64_t>(plants) - 1)),
+                   table.text("domain"), table.number_or("time", 0, 0, 86400), table.vector("velocity")};
+  if (pluck.velocity.norm() > kFastest) table.fail("velocity", "is above 100 m/s");
+  table.refuse_unknown_keys();
+  return pluck;
+}
+
 SceneClimber read_climber(const TomlTable& table) {
   SceneClimber climber;
   if (table.has("bake"))
@@ -109,6 +119,8 @@ Scene read_scene(const std::filesystem::path& path) {
   for (const TomlTable& entry : table.tables("obstacle")) scene.obstacles.push_back(read_obstacle(entry));
   for (const TomlTable& entry : table.tables("plant")) scene.plants.push_back(read_plant_entry(entry));
   for (const TomlTable& entry : table.tables("climber")) scene.climbers.push_back(read_climber(entry));
+  for (const TomlTable& entry : table.tables("pluck"))
+    scene.plucks.push_back(read_pluck(entry, scene.plants.size()));
   table.refuse_unknown_keys();
   if (scene.plants.empty() && scene.climbers.empty())
     throw Error(Error::Kind::Input, path.string() + ": the scene has no [[plant]] and no [[climber]]",

@@ -34,6 +34,15 @@ struct SceneClimber {
   size_t max_particles;
 };
 
+/// A branch or leaf is struck: its particles get a velocity that grows from nothing at its root with the square of
+/// the way to its tip (much like its lowest mode, so that it swings at its own frequency).
+struct ScenePluck {
+  size_t plant;        ///< which [[plant]], from 0
+  std::string domain;  ///< name, or "#id", of a domain of its bake
+  double time;         ///< s
+  Vec3 velocity;       ///< of the tip, m/s
+};
+
 /// The wind everywhere (none when the velocity is zero), and air particles that emitters blow.
 struct SceneWind {
   enum class Kind { Gust, Ambient };
@@ -63,6 +72,7 @@ struct Scene {
   std::vector<SceneObstacle> obstacles;
   std::vector<ScenePlant> plants;
   std::vector<SceneClimber> climbers;
+  std::vector<ScenePluck> plucks;
   std::optional<SceneCamera> camera;  ///< absent: frame everything
 };
 

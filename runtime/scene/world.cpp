@@ -3,11 +3,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "materials/bake/bake_file.h"
 #include "materials/law/species_file.h"
 #include "mesher/base/error.h"
 #include "mesher/base/hash.h"
+#include "mesher/base/nearest_word.h"
 #include "mesher/base/parallel.h"
 #include "mesher/base/stopwatch.h"
 #include "runtime/sim/plant_from_bake.h"
@@ -68,6 +70,46 @@ void World::add_baked(const ScenePlant& entry) {
                                  name, calibration.out_of_range.size(), calibration.branches, scene_.time_step));
   inhabitant->look = plant_look(bake.law.species);
   inhabitants_.push_back(std::move(inhabitant));
+  for (const ScenePluck& pluck : scene_.plucks)
+    if (pluck.plant + 1 == inhabitants_.size()) add_pluck(pluck, bake);
+}
+
+void World::add_pluck(const ScenePluck& entry, const Bake& bake) {
+  const Plant& plant = inhabitants_.back()->plant;
+  std::optional<BranchId> found;
+  std::vector<std::string> names;
+  for (size_t i = 0; i < plant.branches.size(); ++i) {
+    const DomainId domain = plant.branches[i].domain;
+    if (!domain.valid()) continue;
+    names.push_back(bake.domains[domain.index()].name);
+    if (!found && (entry.domain == names.back() || entry.domain == "#" + std::to_string(domain.index())))
+      found = BranchId(i);
+  }
+  if (!found)
+    throw Error(Error::Kind::Input,
+                fmt::format("{}: [[pluck]] names '{}', but '{}' has no such branch or leaf", scene_.file.string(),
+                            entry.domain, plant.name),
+                fmt::format("did you mean '{}'?", nearest_word(entry.domain, names)));
+  plucks_.push_back({entry.plant, *found, static_cast<size_t>(std::lround(entry.time / scene_.time_step)), entry.velocity});
+}
+
+void World::pluck(size_t index) {
+  Plant& plant = inhabitants_[index]->plant;
+  for (const Pluck& pluck : plucks_) {
+    if (pluck.plant != index || pluck.step != steps_) continue;
+    const Branch& branch = plant.branches[pluck.branch.index()];
+    double length = 0, before = 0;
+    for (const ParticleId id : branch.particles) length += 2 * plant.particles[id.index()].half_length;
+    for (const ParticleId id : branch.particles) {
+      Motion& motion = plant.motion[id.index()];
+      const double half = plant.particles[id.index()].half_length, way = (before + half) / length;
+      before += 2 * half;
+      motion.velocity += way * way * pluck.velocity;
+      // The slope of that velocity along the branch turns the particle.
+      const Vec3 axis = motion.orientation * Vec3::UnitY();
+      motion.angular_velocity += axis.cross(2 * way / length * pluck.velocity);
+    }
+  }
 }
 
 void World::add_climber(const SceneClimber& entry, uint64_t seed) {
@@ -113,6 +155,7 @@ void World::step_inhabitant(size_t index) {
   Inhabitant& self = *inhabitants_[index];
   WorldReport& report = self.report;
   self.springs.clear();
+  pluck(index);
   if (!wind_.has_air()) grow(self);
   const Stopwatch watch;
   wind_.add_to(index, self.plant, time(), self.springs, self.wrenches);

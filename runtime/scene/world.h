@@ -67,6 +67,12 @@ class World final : public Simulation {
     std::vector<uint8_t> growing;      // per particle, of a climber
     WorldReport report;
   };
+  struct Pluck {
+    size_t plant;
+    BranchId branch;
+    size_t step;  // before which it happens
+    Vec3 velocity;
+  };
   struct Grab {
     size_t plant;
     WorldSpring spring;
@@ -76,6 +82,8 @@ class World final : public Simulation {
   void add_baked(const ScenePlant& entry);
   void add_climber(const SceneClimber& entry, uint64_t seed);
   void grow(Inhabitant& self);
+  void add_pluck(const ScenePluck& entry, const Bake& bake);
+  void pluck(size_t index);
   void step_inhabitant(size_t index);
   void add_to(DrawScene& scene, bool names) const;
 
@@ -87,6 +95,7 @@ class World final : public Simulation {
   std::vector<std::unique_ptr<Inhabitant>> inhabitants_;
   std::vector<PlantInWind> in_wind_;
   std::optional<Grab> grabbed_;
+  std::vector<Pluck> plucks_;
   size_t steps_ = 0;
   PhaseSeconds last_step_;
   std::vector<std::string> notes_;

@@ -38,9 +38,9 @@ TEST(MergeBelow, MakesABranchAndItsTwigsOneAndKeepsLeaves) {
       EXPECT_EQ(now.parent, coarse.became[before.parent.index()]);
     }
   }
-  EXPECT_NE(coarse.notes.at(0).find("3 branches became part of another"), std::string::npos)
-      << coarse.notes[0];
-  EXPECT_EQ(coarse.notes.size(), 1u);
+  EXPECT_NE(coarse.plant.notes.at(0).find("3 branches became part of another"), std::string::npos)
+      << coarse.plant.notes[0];
+  EXPECT_EQ(coarse.plant.notes.size(), 1u);
 }
 
 // Figure 18: in the coarse decomposition small branches share the material of what they grow on, which is
@@ -80,8 +80,8 @@ TEST(MergeBelow, LeavesApartWhatDoesNotTouchAndSaysSo) {
   const MergedPlant coarse = merged(plant, 1);
   EXPECT_EQ(coarse.plant.domains.size(), plant.domains.size() - 2);
   EXPECT_EQ(coarse.plant.domains[coarse.became[twig].index()].name, plant.domains[twig].name);
-  ASSERT_EQ(coarse.notes.size(), 2u);
-  EXPECT_NE(coarse.notes[1].find(plant.domains[twig].name), std::string::npos);
+  ASSERT_EQ(coarse.plant.notes.size(), 2u);
+  EXPECT_NE(coarse.plant.notes[1].find(plant.domains[twig].name), std::string::npos);
 }
 
 TEST(MergeBelow, TheDeepestLevelChangesNothing) {

@@ -26,6 +26,7 @@ ProgramResult run_program(const std::string& program, const std::vector<std::str
     const int to_out = open(out.c_str(), O_WRONLY | O_CREAT, 0600),
               to_err = open(err.c_str(), O_WRONLY | O_CREAT, 0600);
     const int from = open("/dev/null", O_RDONLY);
+    setenv("XDG_CACHE_HOME", capture.path().c_str(), 1);  // no test sees what another one left
     if (chdir(folder.c_str()) != 0) _exit(127);
     dup2(from, 0), dup2(to_out, 1), dup2(to_err, 2);
     execvp(argv[0], const_cast<char* const*>(argv.data()));
