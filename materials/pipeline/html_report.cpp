@@ -23,10 +23,22 @@ double brief(double value) {
 }
 
 /// Why someone should look at a domain; empty when there is no reason.
-std::string doubt(const BakedDomain& domain) {
+std::string doubt(const BakedDomain& domain, double parent_confidence) {
+  // Below one half another parent is as likely (mesher/shells/segment.cpp lists the same).
+  if (parent_confidence < 0.5)
+    return fmt::format("may grow on another branch: confidence {:.2f}", parent_confidence);
   if (domain.route.find("wrap") != std::string::npos) return "wrapped: its surface is an approximation";
   if (domain.route.find("beam") != std::string::npos) return "no solid: modelled as a beam";
   return {};
+}
+
+/// How sure the parent of every domain of the bake is.
+std::vector<double> parent_confidences(const SegmentedPlant& plant, const BakeResult& result) {
+  std::vector<double> confidences(result.bake.domains.size(), 1);
+  for (size_t i = 0; i < plant.domains.size(); ++i)
+    if (result.baked_as[i].valid())
+      confidences[result.baked_as[i].index()] = plant.domains[i].parent_confidence;
+  return confidences;
 }
 
 /// Texts that repeat, as a list and the index of each.
@@ -41,16 +53,18 @@ struct Dictionary {
 };
 
 /// One list per quantity, as short as they can be: a plant may have 30,000 domains.
-Json domains_json(const Bake& bake, Dictionary& groups, Dictionary& routes) {
+Json domains_json(const Bake& bake, const std::vector<double>& confidences, Dictionary& groups,
+                  Dictionary& routes) {
   Json lists = Json::object();
-  for (const BakedDomain& d : bake.domains) {
+  for (size_t id = 0; id < bake.domains.size(); ++id) {
+    const BakedDomain& d = bake.domains[id];
     lists["name"].push_back(d.name);
     lists["parent"].push_back(d.parent.valid() ? static_cast<int64_t>(d.parent.value) : -1);
     lists["leaf"].push_back(d.kind == DomainKind::Leaf ? 1 : 0);
     lists["level"].push_back(d.level);
     lists["group"].push_back(groups.add(d.group));
     lists["route"].push_back(routes.add(d.route));
-    lists["doubt"].push_back(doubt(d));
+    lists["doubt"].push_back(doubt(d, confidences[id]));
     lists["solved_as"].push_back(d.solved_as.value);
     lists["tets"].push_back(d.tets);
     const DomainMaterial& m = d.material;
@@ -118,7 +132,7 @@ Json report_json(const SegmentedPlant& plant, const BakeResult& result) {
   const Bake& bake = result.bake;
   const StageSeconds& s = result.seconds;
   Dictionary groups, routes;
-  Json domains = domains_json(bake, groups, routes), laws = Json::array();
+  Json domains = domains_json(bake, parent_confidences(plant, result), groups, routes), laws = Json::array();
   for (const auto& name : groups.texts) laws.push_back(group_json(name, bake.law.group(name)));
   return {{"plant", bake.plant},
           {"species", bake.law.species},

@@ -61,7 +61,7 @@ TEST(ReportPage, DrawsThePlantAndChoosesBothWaysInABrowser) {
                   {"--headless", "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader",
                    "--virtual-time-budget=15000", "--window-size=1280,900",
                    "--user-data-dir=" + (folder / "profile").string(), "--dump-dom",
-                   "file://" + (folder / "a.html").string()},
+                   "file://" + (folder / "a.html").string() + "?check"},
                   folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const nlohmann::json found = self_check(result.out), data = data_of_page();

@@ -104,6 +104,14 @@ TEST(HtmlReport, ShowsWhatWasLeftOut) {
   EXPECT_EQ(data["mesh"]["pieces"][0][0], 0);
 }
 
+TEST(HtmlReport, DoubtsParentsThatAreMoreLikelyWrong) {
+  Baked both = baked();
+  both.plant.domains[2].parent_confidence = 0.3;
+  both.result.bake.domains[3].route = "beam";
+  const nlohmann::json doubts = data_of(html_report(both.plant, both.result))["domains"]["doubt"];
+  for (size_t id = 0; id < doubts.size(); ++id) EXPECT_EQ(doubts[id] == "", id != 2 && id != 3) << id;
+}
+
 TEST(CompareModels, EachIsWhatABakeByThatModelGives) {
   const Baked both = baked();
   const ModelComparison comparison = compare_models(both.result.bake);

@@ -307,15 +307,14 @@ function start() {
   choose(Number(/#domain=(\d+)/.exec(location.hash)?.[1] ?? -1));
 }
 
-/** What the page found of itself, for whoever cannot look: counts, and whether choosing works both ways. */
+/** What the page found of itself, for whoever cannot look (page.html?check): counts, and whether choosing works both
+ * ways. */
 function selfCheck() {
   const found = { domains: COUNT, failed: data.failed.length, triangles: view.plant?.triangles ?? 0, rows: view.table.rows.length, csv_lines: modelsCsv().split("\n").length - 2 };
   if (view.plant) {
-    const before = view.chosen, canvas = $("plant");
+    const before = view.chosen;
     found.drawn_pixels = view.plant.drawnPixels();
-    let picked = -1;  // the first domain met on a raster of the picture
-    for (let i = 1; i < 24 && picked < 0; ++i)
-      for (let k = 1; k < 24 && picked < 0; ++k) picked = view.plant.pick((canvas.clientWidth * k) / 24, (canvas.clientHeight * i) / 24);
+    const picked = view.plant.pick(...(view.plant.somewhere() ?? [0, 0]));
     view.plant.onPick(picked);
     found.picked = picked;
     found.picked_row = Number(document.querySelector(".row.chosen")?.dataset.id ?? -1);
@@ -330,4 +329,4 @@ function selfCheck() {
 }
 
 start();
-requestAnimationFrame(() => setTimeout(selfCheck, 0));
+if (new URLSearchParams(location.search).has("check")) requestAnimationFrame(() => setTimeout(selfCheck, 0));

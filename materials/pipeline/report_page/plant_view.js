@@ -285,7 +285,7 @@ class PlantView {
     for (const [begin, count] of this.ranges.get(this.chosen) ?? []) gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 4 * begin);
   }
 
-  /** Share of the canvas that is not background, after a draw in the same turn. */
+  /** How many pixels are not background. */
   drawnPixels() {
     const gl = this.gl, { width, height } = this.canvas, pixels = new Uint8Array(4 * width * height);
     this.draw();
@@ -324,6 +324,19 @@ class PlantView {
       if (pixels[4 * i + 3] && distance < least) (least = distance), (best = pixels[4 * i] + 256 * pixels[4 * i + 1] + 65536 * pixels[4 * i + 2] - 1);
     }
     return best;
+  }
+
+  /** A point of the canvas (CSS pixels) that shows the plant; null when none does. */
+  somewhere() {
+    const gl = this.gl;
+    this.drawIds();
+    const { width, height } = this.canvas, pixels = new Uint8Array(4 * width * height), shown = [];
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    for (let i = 0; i < width * height; ++i) if (pixels[4 * i + 3]) shown.push(i);
+    if (!shown.length) return null;
+    const i = shown[shown.length >> 1], scale = this.canvas.clientWidth / width;
+    return [((i % width) + 0.5) * scale, (height - Math.floor(i / width) - 0.5) * scale];
   }
 
   choose(id) {
