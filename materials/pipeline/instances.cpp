@@ -23,6 +23,7 @@ constexpr double kThicknessTolerance = 2e-3;
 struct Shape {
   uint64_t connectivity;
   std::array<double, 3> ratios;  // without unit
+  double extent;                 // m, root mean square distance from the middle
   double tolerance;              // m
 };
 
@@ -39,7 +40,7 @@ Shape shape_of(const Domain& domain) {
     volume += p.cross(q).dot(r) / 6;
     area += (q - p).cross(r - p).norm() / 2;
   }
-  const double extent = std::sqrt(variance / static_cast<double>(points.size()));
+  const double extent = shape.extent = std::sqrt(variance / static_cast<double>(points.size()));
   shape.ratios = {area / (extent * extent), (points.front() - centre).norm() / extent,
                   (points.back() - points.front()).norm() / extent};
   const double thickness = 2 * std::abs(volume) / area;
@@ -48,7 +49,6 @@ Shape shape_of(const Domain& domain) {
 }
 
 bool is_open_sheet(const Domain& domain) {
-  if (domain.kind == DomainKind::Leaf) return true;
   const std::vector<std::vector<uint32_t>> loops =
       border_loops(domain.surface, find_adjacency(domain.surface));
   return !loops.empty() && is_sheet(domain.surface, loops);
@@ -61,18 +61,27 @@ std::optional<Similarity> similarity_of(const Domain& from, const Domain& to, do
   const Similarity s = best_similarity(a, b);
   for (size_t i = 0; i < a.size(); ++i)
     if (!((s.point(a[i]) - b[i]).norm() <= tolerance)) return {};  // also for NaN
-  const bool thickness_scales = std::abs(to.thickness / (s.scale * from.thickness) - 1) < kThicknessTolerance;
-  if (!thickness_scales && is_open_sheet(from)) return {};
   return s;
 }
+
+/// The first of its shape.
+struct Candidate {
+  size_t domain;
+  std::array<double, 3> ratios;
+  double slimness;  // thickness over extent
+  bool is_sheet;    // else the thickness does not matter
+
+  bool may_match(const Domain& copy, const Shape& shape) const {
+    if (is_sheet && std::abs(copy.thickness / shape.extent / slimness - 1) > kThicknessTolerance)
+      return false;
+    return std::abs(ratios[1] - shape.ratios[1]) <= kWindow * (1 + ratios[1]) &&
+           std::abs(ratios[2] - shape.ratios[2]) <= kWindow * (1 + ratios[2]);
+  }
+};
 
 }  // namespace
 
 std::vector<Instance> find_instances(const SegmentedPlant& plant) {
-  struct Candidate {
-    size_t domain;
-    std::array<double, 3> ratios;
-  };
   std::map<uint64_t, std::multimap<double, Candidate>> known;
   std::vector<Instance> instances;
   for (size_t i = 0; i < plant.domains.size(); ++i) {
@@ -84,16 +93,15 @@ std::vector<Instance> find_instances(const SegmentedPlant& plant) {
     auto& candidates = known[shape.connectivity];
     const auto end = candidates.upper_bound(shape.ratios[0] * (1 + kWindow));
     for (auto c = candidates.lower_bound(shape.ratios[0] * (1 - kWindow)); c != end; ++c) {
-      const auto& [other, ratios] = c->second;
-      if (std::abs(ratios[1] - shape.ratios[1]) > kWindow * (1 + ratios[1]) ||
-          std::abs(ratios[2] - shape.ratios[2]) > kWindow * (1 + ratios[2]))
-        continue;
-      if (const auto similarity = similarity_of(plant.domains[other], domain, shape.tolerance)) {
-        instances.back() = {other, *similarity};
+      if (!c->second.may_match(domain, shape)) continue;
+      if (const auto similarity = similarity_of(plant.domains[c->second.domain], domain, shape.tolerance)) {
+        instances.back() = {c->second.domain, *similarity};
         break;
       }
     }
-    if (instances.back().source == i) candidates.emplace(shape.ratios[0], Candidate{i, shape.ratios});
+    if (instances.back().source == i)
+      candidates.emplace(shape.ratios[0],
+                         Candidate{i, shape.ratios, domain.thickness / shape.extent, is_open_sheet(domain)});
   }
   return instances;
 }

@@ -204,7 +204,8 @@ void add_bake_verb(CLI::App& app, int& exit_code) {
   verb->add_flag("--strict", arguments->options.strict, "Stop at the first domain that cannot be made solid");
   verb->footer(
       "Example:\n"
-      "  liana bake data/plants/apple_small.glb --species apple -o apple.bake --report report.json\n\n"
+      "  liana bake data/plants/apple_small.glb --species apple -o apple.bake --report report.json\n"
+      "  liana bake --manifest plants.toml\n\n"
       "Exit code: 0 baked, 1 bad input, 2 bad command line, 3 baked but for some domains, 130 stopped by "
       "Ctrl-C");
   add_manifest_options(*verb, *arguments);
