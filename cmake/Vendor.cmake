@@ -20,4 +20,5 @@ find_library(TET_LIBRARY tet REQUIRED)
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
 find_library(AMD_LIBRARY amd REQUIRED)
 find_library(ARPACK_LIBRARY arpack REQUIRED)
+find_library(OPENMESH_LIBRARY OpenMeshCore REQUIRED)  # tests: what others write
 include(GoogleTest)

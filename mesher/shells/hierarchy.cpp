@@ -165,7 +165,8 @@ class Grower {
   /// With the parent placed: what begins where it begins is rather its sibling.
   double full_cost(const Contact& c) const {
     const double root = shapes_[c.parent].ends[placed_[c.parent].end].along;
-    return c.cost + 1.2 * std::max(0.0, 1 - std::abs(c.along - root) / (0.5 * c.radius));
+    const double sibling = is_branch(c.child) ? 1.2 : 0.1;  // a leaf may sit in the fork itself
+    return c.cost + sibling * std::max(0.0, 1 - std::abs(c.along - root) / (0.5 * c.radius));
   }
 
   void grow_from_ground() {
