@@ -15,6 +15,7 @@
 #include "tests/support/hierarchy_score.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/shapes.h"
+#include "tests/support/skins.h"
 
 namespace liana {
 namespace {
@@ -251,6 +252,21 @@ TEST(Segment, NamesDomainsAfterObjectsAndKeepsNamesUnique) {
   EXPECT_NE(plant.domains[1].name, plant.domains[2].name);
 }
 
+TEST(Segment, CutsASkinAndHangsOtherShellsOnItsParts) {
+  TriangleSoup soup;
+  append(soup, make_skin({{Vec3(0, 0, 0), Vec3(0, 1, 0), 0.05, 0.03},
+                          {Vec3(0, 0.5, 0), Vec3(0.5, 0.8, 0), 0.025, 0.02}},
+                         0.008));
+  append(soup, transformed(open_tube(0.3, 0.015), Affine3(Eigen::Translation3d(0.4, 0.74, 0) *
+                                                          Eigen::AngleAxisd(1.2, Vec3::UnitX()))));
+  const SegmentedPlant plant = segment(soup, Unit::Metre, "x");
+  ASSERT_EQ(plant.domains.size(), 3u);
+  EXPECT_FALSE(plant.domains[0].parent.valid());
+  EXPECT_EQ(plant.domains[1].parent, DomainId(0));
+  EXPECT_EQ(plant.domains[1].parent_confidence, 1);
+  EXPECT_EQ(plant.domains[2].parent, DomainId(1));
+}
+
 TEST(Segment, RefusesAMeshWithoutABranch) {
   try {
     SegmentedPlant leaf;
@@ -281,8 +297,12 @@ TEST(LoadPlant, ScalesSegmentedFilesByTheUnit) {
   const SegmentedPlant plant = make_small_plant();
   write_plant(plant, folder / "p.glb");
   const SegmentedPlant small = load_plant(folder / "p.glb", {.unit = Unit::Centimetre});
-  EXPECT_NEAR(small.domains[0].surface.positions[7].y(), 0.01 * plant.domains[0].surface.positions[7].y(),
-              1e-6);
+  const auto top = [](const SegmentedPlant& p) {
+    double top = 0;
+    for (const Vec3& v : p.domains[0].surface.positions) top = std::max(top, v.y());
+    return top;
+  };
+  EXPECT_NEAR(top(small), 0.01 * top(plant), 1e-8);
 }
 
 TEST(UnitGuess, IsUnsureOnlyWhereSizesSayLittle) {
