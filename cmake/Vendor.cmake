@@ -28,4 +28,5 @@ foreach(module core imgproc video)
   find_library(OPENCV_${module} opencv_${module} REQUIRED)
   target_link_libraries(opencv INTERFACE ${OPENCV_${module}})
 endforeach()
+find_library(OPENMESH_LIBRARY OpenMeshCore REQUIRED)  # tests: what others write
 include(GoogleTest)

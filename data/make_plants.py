@@ -231,12 +231,13 @@ def write_plant(name, branches, leaves, leaf):
     glb.write(os.path.join(FOLDER, name + ".glb"))
 
 
-for name, plant in PLANTS.items():
-    curve, quads = grow(plant["sapling"])
-    branches = branch_domains(curve, sides=8 if plant["sapling"]["levels"] > 2 else 6, steps=2)
-    leaves = leaf_domains(branches, quads, plant["leaf"]["lengths"])
-    write_plant(name, branches, leaves, plant["leaf"])
-    top = max(p.z for b in branches for p in b["points"])
-    print(f"{name}: {len(branches)} branches on {1 + max(b['level'] for b in branches)} levels, {len(leaves)} leaves, "
-          f"{top:.2f} m high, trunk {2000 * branches[0]['radii'][0]:.0f} mm, thinnest "
-          f"{2000 * min(min(b['radii']) for b in branches):.1f} mm")
+if __name__ == "__main__":
+    for name, plant in PLANTS.items():
+        curve, quads = grow(plant["sapling"])
+        branches = branch_domains(curve, sides=8 if plant["sapling"]["levels"] > 2 else 6, steps=2)
+        leaves = leaf_domains(branches, quads, plant["leaf"]["lengths"])
+        write_plant(name, branches, leaves, plant["leaf"])
+        top = max(p.z for b in branches for p in b["points"])
+        print(f"{name}: {len(branches)} branches on {1 + max(b['level'] for b in branches)} levels, {len(leaves)} leaves, "
+              f"{top:.2f} m high, trunk {2000 * branches[0]['radii'][0]:.0f} mm, thinnest "
+              f"{2000 * min(min(b['radii']) for b in branches):.1f} mm")

@@ -1,7 +1,8 @@
 #include "mesher/base/weld.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
-#include <unordered_map>
 
 namespace liana {
 namespace {
@@ -11,7 +12,11 @@ namespace {
 /// Not so large that many places could crowd into one cell.
 class PlaceGrid {
  public:
-  PlaceGrid(const Vec3& low, double tolerance) : low_(low), tolerance_(tolerance), cell_(16 * tolerance) {}
+  PlaceGrid(const Vec3& low, double tolerance, size_t positions)
+      : low_(low),
+        tolerance_(tolerance),
+        cell_(16 * tolerance),
+        first_(std::bit_ceil(std::max<size_t>(positions, 16)), kEnd) {}
 
   /// Index of the place within the tolerance; a new one at the end of `places` if there is none.
   uint32_t find_or_add(const Vec3& position, std::vector<Vec3>& places) {
@@ -21,26 +26,33 @@ class PlaceGrid {
     for (double x = first.x(); x <= last.x(); ++x)
       for (double y = first.y(); y <= last.y(); ++y)
         for (double z = first.z(); z <= last.z(); ++z) {
-          const auto [begin, end] = cells_.equal_range(key(x, y, z));
-          for (auto it = begin; it != end; ++it)
-            if ((places[it->second] - position).norm() <= tolerance_) return it->second;
+          for (uint32_t p = first_[slot(x, y, z)]; p != kEnd; p = next_[p])
+            if ((places[p] - position).norm() <= tolerance_) return p;
         }
     const auto place = static_cast<uint32_t>(places.size());
     places.push_back(position);
     const auto own = scaled.floor().eval();
-    cells_.emplace(key(own.x(), own.y(), own.z()), place);
+    uint32_t& newest = first_[slot(own.x(), own.y(), own.z())];
+    next_.push_back(newest);
+    newest = place;
     return place;
   }
 
  private:
-  static uint64_t key(double x, double y, double z) {
-    const auto part = [](double v) { return static_cast<uint64_t>(static_cast<int64_t>(v)) & 0x1fffff; };
-    return part(x) << 42 | part(y) << 21 | part(z);
+  static constexpr uint32_t kEnd = Id<Mesh>::kNone;
+
+  /// Where the list of a cell's places starts; cells may share a list.
+  size_t slot(double x, double y, double z) const {
+    uint64_t hash = 0;
+    for (const double v : {x, y, z})
+      hash = (hash ^ static_cast<uint64_t>(static_cast<int64_t>(v))) * 0x9e3779b97f4a7c15ull,
+      hash ^= hash >> 32;
+    return hash & (first_.size() - 1);
   }
 
   Vec3 low_;
   double tolerance_, cell_;
-  std::unordered_multimap<uint64_t, uint32_t> cells_;
+  std::vector<uint32_t> first_, next_;  // lists of places: per slot, per place
 };
 
 }  // namespace
@@ -51,7 +63,7 @@ Mesh weld(const Mesh& mesh, double relative_tolerance) {
   Mesh welded;
   if (mesh.triangles.empty() || box.isEmpty() || !(box.diagonal().norm() > 0)) return welded;
 
-  PlaceGrid grid(box.min(), relative_tolerance * box.diagonal().norm());
+  PlaceGrid grid(box.min(), relative_tolerance * box.diagonal().norm(), mesh.positions.size());
   std::vector<uint32_t> place(mesh.positions.size(), Id<Mesh>::kNone);
   for (const Triangle& triangle : mesh.triangles) {
     Triangle moved;
@@ -73,7 +85,7 @@ std::vector<uint32_t> find_places(const std::vector<Vec3>& positions, double tol
   places.clear();
   std::vector<uint32_t> place(positions.size(), 0);
   if (positions.empty()) return place;
-  PlaceGrid grid(box.min(), std::max(tolerance, 1e-300));
+  PlaceGrid grid(box.min(), std::max(tolerance, 1e-300), positions.size());
   for (size_t i = 0; i < positions.size(); ++i) place[i] = grid.find_or_add(positions[i], places);
   return place;
 }

@@ -33,8 +33,14 @@ struct Placed {
 
 class Grower {
  public:
-  Grower(const std::vector<ShellShape>& shapes, const std::vector<DomainKind>& kinds, const Vec3& up)
-      : shapes_(shapes), kinds_(kinds), up_(up), placed_(shapes.size()), thickest_end_(shapes.size(), 0) {
+  Grower(const std::vector<ShellShape>& shapes, const std::vector<DomainKind>& kinds,
+         const std::vector<int>& known, const Vec3& up)
+      : shapes_(shapes),
+        kinds_(kinds),
+        known_(known),
+        up_(up),
+        placed_(shapes.size()),
+        thickest_end_(shapes.size(), 0) {
     for (size_t s = 0; s < shapes.size(); ++s)
       for (const ShellEnd& end : shapes[s].ends) thickest_end_[s] = std::max(thickest_end_[s], end.radius);
     measure_plant();
@@ -82,7 +88,7 @@ class Grower {
   }
 
   double ground_cost(uint32_t shell, int end) const {
-    if (!is_branch(shell)) return kInfinity;
+    if (!is_branch(shell) || known_[shell] >= 0) return kInfinity;
     const ShellEnd& e = shapes_[shell].ends[end];
     const double height = (e.point.dot(up_) - lowest_) / height_;
     return 0.35 + 6 * std::max(0.0, height - 0.03) + thin_end_cost(shell, end) +
@@ -90,13 +96,12 @@ class Grower {
   }
 
   /// What can be said of an end near a bone before it is known where the bone's branch begins.
-  Contact contact(uint32_t shell, int end, uint32_t bone) const {
+  Contact contact(uint32_t shell, int end, uint32_t parent, const Bone& b) const {
     const ShellEnd& e = shapes_[shell].ends[end];
-    const Bone& b = *bones_[bone].second;
     const Vec3 axis = b.to - b.from;
     const double t =
         std::clamp((e.point - b.from).dot(axis) / std::max(axis.squaredNorm(), 1e-300), 0.0, 1.0);
-    Contact c{shell, bones_[bone].first, static_cast<uint8_t>(end), 0, 0, 0};
+    Contact c{shell, parent, static_cast<uint8_t>(end), 0, 0, 0};
     c.along = b.from_along + t * (b.to_along - b.from_along);
     c.radius = std::max(b.from_radius + t * (b.to_radius - b.from_radius), 1e-9 * thickest_);
     const double off_axis = (e.point - b.from - t * axis).norm();
@@ -113,6 +118,20 @@ class Grower {
           1.2 * std::log1p(gap / near) + 0.7 * e.doubt + 0.15 * std::log(std::max(1.0, c.radius / thin_));
     }
     return c;
+  }
+
+  /// The end nearest to a parent that is known, at no cost.
+  Contact known_contact(uint32_t shell) const {
+    Contact best{};
+    best.cost = kInfinity;
+    const std::vector<Bone>& bones = shapes_[known_[shell]].bones;
+    for (size_t end = 0; end < std::min<size_t>(shapes_[shell].ends.size(), 255); ++end)
+      for (const Bone& bone : bones) {
+        Contact c = contact(shell, static_cast<int>(end), static_cast<uint32_t>(known_[shell]), bone);
+        if (c.cost < best.cost) best = c;
+      }
+    best.cost = -0.5;
+    return best;
   }
 
   void find_contacts() {
@@ -137,13 +156,16 @@ class Grower {
         shapes_.size(), 0,
         [&](size_t s, unsigned) {
           const auto shell = static_cast<uint32_t>(s);
+          if (known_[s] >= 0) return of_shell[s].push_back(known_contact(shell));
           for (size_t end = 0; end < std::min<size_t>(shapes_[s].ends.size(), 255); ++end) {
             const ShellEnd& e = shapes_[s].ends[end];
             std::vector<Contact> found;
             for (double reach = std::max(3 * e.radius, 1e-6 * widest); found.empty() && reach <= 4 * widest;
                  reach *= 2)
               tree.near(e.point, reach, [&](uint32_t bone) {
-                if (bones_[bone].first != shell) found.push_back(contact(shell, static_cast<int>(end), bone));
+                if (bones_[bone].first != shell)
+                  found.push_back(
+                      contact(shell, static_cast<int>(end), bones_[bone].first, *bones_[bone].second));
               });
             std::sort(found.begin(), found.end(), [](const Contact& a, const Contact& b) {
               return std::tie(a.cost, a.parent, a.along) < std::tie(b.cost, b.parent, b.along);
@@ -165,7 +187,8 @@ class Grower {
   /// With the parent placed: what begins where it begins is rather its sibling.
   double full_cost(const Contact& c) const {
     const double root = shapes_[c.parent].ends[placed_[c.parent].end].along;
-    return c.cost + 1.2 * std::max(0.0, 1 - std::abs(c.along - root) / (0.5 * c.radius));
+    const double sibling = is_branch(c.child) ? 1.2 : 0.1;  // a leaf may sit in the fork itself
+    return c.cost + sibling * std::max(0.0, 1 - std::abs(c.along - root) / (0.5 * c.radius));
   }
 
   void grow_from_ground() {
@@ -240,6 +263,7 @@ class Grower {
 
   double confidence(uint32_t shell) const {
     const Placed& placed = placed_[shell];
+    if (known_[shell] >= 0) return 1;
     double own = placed.cost;
     if (placed.cost == -1) own = ground_cost(shell, placed.end);
     double others = 0;
@@ -260,6 +284,7 @@ class Grower {
 
   const std::vector<ShellShape>& shapes_;
   const std::vector<DomainKind>& kinds_;
+  const std::vector<int>& known_;  // parents, -1 where they are to be found
   const Vec3 up_;
   std::vector<Placed> placed_;
   std::vector<double> thickest_end_;  // per shell
@@ -274,9 +299,10 @@ class Grower {
 }  // namespace
 
 std::vector<Growth> find_growth(const std::vector<ShellShape>& shapes, const std::vector<DomainKind>& kinds,
-                                const Vec3& up) {
-  require(shapes.size() == kinds.size(), "find_growth: a kind per shell");
-  return Grower(shapes, kinds, up).grow();
+                                const std::vector<int>& known_parents, const Vec3& up) {
+  require(shapes.size() == kinds.size() && shapes.size() == known_parents.size(),
+          "find_growth: one of each per shell");
+  return Grower(shapes, kinds, known_parents, up).grow();
 }
 
 }  // namespace liana

@@ -14,6 +14,7 @@
 #include "mesher/shells/hierarchy.h"
 #include "mesher/shells/split_shells.h"
 #include "mesher/shells/unit_guess.h"
+#include "mesher/surface/skin_cut.h"
 
 namespace liana {
 namespace {
@@ -53,6 +54,40 @@ Parts parts_of(std::vector<Shell> shells, const std::vector<SoupLabel>& labels) 
     parts.kinds.push_back(leaf ? DomainKind::Leaf : DomainKind::Branch);
   }
   return parts;
+}
+
+/// Cuts the skins that hold several branches; every piece becomes a shell. Returns how many skins there were.
+size_t cut_skins(Parts& parts, const std::vector<SoupLabel>& labels) {
+  std::vector<std::vector<SkinPiece>> pieces(parts.shells.size());
+  parallel_for(parts.shells.size(), 0, [&](size_t s, unsigned) {
+    if (parts.kinds[s] != DomainKind::Branch || !parts.shapes[s].forks) return;
+    if (is_branching_skin(parts.shells[s].surface)) pieces[s] = cut_skin(parts.shells[s].surface);
+  });
+  size_t skins = 0;
+  std::vector<Shell> shells;
+  for (size_t s = 0; s < pieces.size(); ++s) {
+    const auto first = static_cast<int>(shells.size());
+    if (pieces[s].size() < 2) {
+      shells.push_back(std::move(parts.shells[s]));
+      continue;
+    }
+    ++skins;
+    for (SkinPiece& piece : pieces[s])
+      shells.push_back(
+          {std::move(piece.surface), parts.shells[s].label, piece.parent < 0 ? -1 : first + piece.parent});
+  }
+  if (skins == 0) {
+    parts.shells = std::move(shells);
+    return 0;
+  }
+  parts = parts_of(std::move(shells), labels);
+  for (size_t s = 0; s < parts.shells.size(); ++s) {  // a piece is a branch however flat
+    const int parent = parts.shells[s].grows_from;
+    const bool carrier = parent >= 0 && !parts.shapes[parent].bones.empty();
+    if (parent >= 0 && !carrier) parts.shells[s].grows_from = -1;
+    if (carrier) parts.kinds[s] = DomainKind::Branch, parts.kinds[parent] = DomainKind::Branch;
+  }
+  return skins;
 }
 
 double median(std::vector<double> values, double quantile = 0.5) {
@@ -181,6 +216,9 @@ SegmentedPlant segment(const TriangleSoup& soup, Unit unit, const std::string& f
   note_shells(found, notes);
   if (flat) notes.push_back(count(flat, "shell", "shells") + " without area left out");
   Parts parts = parts_of(std::move(found.shells), soup.labels);
+  if (const size_t skins = cut_skins(parts, soup.labels))
+    notes.push_back(count(skins, "skin that holds", "skins that hold") +
+                    fmt::format(" several branches cut: {} parts in all", parts.shells.size()));
   const auto leaves =
       static_cast<size_t>(std::count(parts.kinds.begin(), parts.kinds.end(), DomainKind::Leaf));
   const bool any_branch = std::any_of(parts.shapes.begin(), parts.shapes.end(), [&](const ShellShape& shape) {
@@ -194,7 +232,9 @@ SegmentedPlant segment(const TriangleSoup& soup, Unit unit, const std::string& f
   notes.push_back(count(parts.shells.size() - leaves, "branch", "branches") + ", " +
                   count(leaves, "leaf", "leaves"));
   const double scale = find_scale(parts, soup, unit, file, notes);
-  const std::vector<Growth> growth = find_growth(parts.shapes, parts.kinds, Vec3::UnitY());
+  std::vector<int> known;
+  for (const Shell& shell : parts.shells) known.push_back(shell.grows_from);
+  const std::vector<Growth> growth = find_growth(parts.shapes, parts.kinds, known, Vec3::UnitY());
   SegmentedPlant plant = domains_of(std::move(parts), growth, soup.labels, scale);
   note_growth(plant, notes);
   plant.notes = std::move(notes);

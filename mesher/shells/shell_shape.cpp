@@ -1,6 +1,7 @@
 #include "mesher/shells/shell_shape.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <queue>
@@ -205,6 +206,15 @@ std::vector<Bone> skeleton(const Mesh& mesh, const EdgeGraph& graph, const std::
   return bones;
 }
 
+/// Whether three bones meet somewhere.
+bool forks(const std::vector<Bone>& bones) {
+  std::map<std::array<double, 3>, int> at;
+  for (const Bone& bone : bones)
+    for (const Vec3& p : {bone.from, bone.to})
+      if (++at[{p.x(), p.y(), p.z()}] > 2) return true;
+  return false;
+}
+
 /// Where a closed end is: the middle of the vertices nearest to the extreme.
 ShellEnd closed_end(const Mesh& mesh, const std::vector<double>& from_extreme, double along, double reach) {
   ShellEnd end{Vec3::Zero(), 0, along};
@@ -265,6 +275,7 @@ ShellShape shape_of(const Mesh& mesh) {
   std::vector<uint32_t> node_of;
   std::vector<Node> nodes;
   shape.bones = skeleton(mesh, graph, distance, shape.length, radius, node_of, nodes);
+  shape.forks = forks(shape.bones);
   for (const Rim& rim : rims) {
     double along = 0;
     for (const uint32_t v : rim.vertices)

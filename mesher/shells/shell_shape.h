@@ -28,6 +28,7 @@ struct ShellShape {
   double length = 0;           ///< longest distance along the surface between two ends
   std::vector<Bone> bones;     ///< of a body; a fork has more than two at a point
   std::vector<ShellEnd> ends;  ///< at least two
+  bool forks = false;          ///< its bones do: perhaps several branches in one skin
 };
 
 /// The bones join the middles of the level sets of the distance from the first end (a Reeb graph), so that

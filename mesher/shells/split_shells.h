@@ -9,8 +9,9 @@
 namespace liana {
 
 struct Shell {
-  Mesh surface;        ///< welded by position, in the soup's unit
-  uint32_t label = 0;  ///< of most of its triangles, index into the soup's labels
+  Mesh surface;         ///< welded by position, in the soup's unit
+  uint32_t label = 0;   ///< of most of its triangles, index into the soup's labels
+  int grows_from = -1;  ///< the shell it was cut from, where it was part of a welded skin
 };
 
 struct Shells {
