@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesher/base/error.h"
 #include "modal/element_matrices.h"
 
 namespace liana {
@@ -73,7 +74,9 @@ double largest_extent(const NodeMesh& mesh) {
 
 }  // namespace
 
-System assemble(const NodeMesh& mesh, Element element, const ElasticMaterial& material) {
+System assemble(const NodeMesh& mesh, Element element, const ElasticMaterial& material,
+                std::span<const ElementScaling> scaling) {
+  require(scaling.empty() || scaling.size() == mesh.element_count(), "one scaling for each element");
   System system;
   system.length = largest_extent(mesh);
   system.time = system.length * std::sqrt(material.density / material.youngs_modulus);
@@ -82,20 +85,22 @@ System assemble(const NodeMesh& mesh, Element element, const ElasticMaterial& ma
   system.stiffness.assign(system.row.size(), Mat3::Zero());
   system.mass.assign(system.row.size(), 0);
 
-  const LameConstants lame = LameConstants::of(1, material.poisson_ratio);
+  const LameConstants uniform = LameConstants::of(1, material.poisson_ratio);
   const std::span<const double> mass = unit_mass(element);
   const int pairs = pair_count(mesh.nodes_per_element);
   std::array<Mat3, pair_count(10)> blocks;
   for (size_t e = 0; e < mesh.element_count(); ++e) {
     const TetGeometry tet = element_geometry(mesh, e, system.length);
-    element_stiffness(element, tet, lame, blocks);
+    const ElementScaling own = scaling.empty() ? ElementScaling() : scaling[e];
+    element_stiffness(element, tet, uniform.scaled(own.stiffness), blocks);
+    const double element_mass = own.density * tet.volume;
     for (int pair = 0; pair < pairs; ++pair) {
       const uint32_t slot = slots[e * pairs + pair], entry = slot >> 1;
       if (slot & 1)
         system.stiffness[entry] += blocks[pair].transpose();
       else
         system.stiffness[entry] += blocks[pair];
-      system.mass[entry] += tet.volume * mass[pair];
+      system.mass[entry] += element_mass * mass[pair];
     }
   }
   return system;

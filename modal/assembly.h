@@ -1,6 +1,7 @@
 // The global K and M of one solid: 3×3 stiffness blocks and one mass scalar for each pair of coupled nodes.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "mesher/base/elastic_material.h"
@@ -30,7 +31,14 @@ struct System {
   NodalVectors multiply_stiffness(const NodalVectors& x) const;
 };
 
-/// Consistent mass, exact integration.
-System assemble(const NodeMesh& mesh, Element element, const ElasticMaterial& material);
+/// Factors of one element on the material's Young's modulus and density.
+struct ElementScaling {
+  double stiffness = 1, density = 1;
+};
+
+/// Consistent mass, exact integration. scaling: one for each element; empty if the material is uniform. The
+/// system's units stay those of `material`.
+System assemble(const NodeMesh& mesh, Element element, const ElasticMaterial& material,
+                std::span<const ElementScaling> scaling = {});
 
 }  // namespace liana

@@ -4,31 +4,12 @@
 #include <limits>
 
 #include "mesher/base/error.h"
+#include "modal/boundary_faces.h"
 
 namespace liana {
 namespace {
 
 using Face = std::array<uint32_t, 3>;
-
-/// Faces that belong to one tet only.
-std::vector<Face> boundary_faces(const TetMesh& mesh) {
-  std::vector<std::pair<Face, Face>> faces;  // sorted corners, corners
-  faces.reserve(4 * mesh.tets.size());
-  for (const auto& [a, b, c, d] : mesh.tets)
-    for (const Face& face : {Face{b, c, d}, Face{a, d, c}, Face{a, b, d}, Face{a, c, b}}) {
-      Face key = face;
-      std::sort(key.begin(), key.end());
-      faces.push_back({key, face});
-    }
-  std::sort(faces.begin(), faces.end());
-  std::vector<Face> boundary;
-  for (size_t i = 0; i < faces.size(); ++i) {
-    const bool again = (i > 0 && faces[i - 1].first == faces[i].first) ||
-                       (i + 1 < faces.size() && faces[i + 1].first == faces[i].first);
-    if (!again) boundary.push_back(faces[i].second);
-  }
-  return boundary;
-}
 
 /// Barycentric coordinates of the point of segment ab nearest to p.
 std::pair<double, double> nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "mesher/base/parallel.h"
+#include "modal/taper_field.h"
 
 namespace liana {
 namespace {
@@ -65,7 +66,9 @@ DomainModes solve(const Solid& solid, const ElasticMaterial& material, const Dom
     const TetMesh tets = tetrahedralize(*solid.surface, solid.is_root, options.tets);
     seconds.tets += seconds_since(start);
     start = std::chrono::steady_clock::now();
-    Modes modes = lowest_modes(tets, material, solid.carried, options.modes);
+    std::vector<ElementScaling> scaling;
+    if (!solid.taper.uniform()) scaling = tapered(tets, solid.taper);
+    Modes modes = lowest_modes(tets, material, solid.carried, options.modes, scaling);
     seconds.modes += seconds_since(start);
     result.frequencies = std::move(modes.frequencies);
     result.tip_direction = std::move(modes.tip_direction);
@@ -81,7 +84,9 @@ DomainModes solve(const Solid& solid, const ElasticMaterial& material, const Dom
   return result;
 }
 
-DomainModes copy_of(const DomainModes& original, const Similarity& similarity) {
+}  // namespace
+
+DomainModes moved(const DomainModes& original, const Similarity& similarity) {
   DomainModes copy = original;
   for (double& f : copy.frequencies) f /= similarity.scale;
   for (double& f : copy.sway.frequencies) f /= similarity.scale;
@@ -89,8 +94,6 @@ DomainModes copy_of(const DomainModes& original, const Similarity& similarity) {
   for (Vec3& d : copy.sway.directions) d = similarity.rotation * d;
   return copy;
 }
-
-}  // namespace
 
 AllModes solve_domains(const std::vector<Solid>& solids, const ElasticMaterial& material,
                        const DomainModesOptions& options, Progress& progress) {
@@ -120,7 +123,7 @@ AllModes solve_domains(const std::vector<Solid>& solids, const ElasticMaterial& 
   });
   for (size_t i = 0; i < solids.size(); ++i) {
     const size_t source = sources[i].solid;
-    if (source != i) all.domains[i] = copy_of(all.domains[source], sources[i].similarity);
+    if (source != i) all.domains[i] = moved(all.domains[source], sources[i].similarity);
     all.domains[i].solved_as = source;
   }
   for (const Seconds& s : seconds) all.tet_seconds += s.tets, all.mode_seconds += s.modes;

@@ -24,6 +24,9 @@ struct DomainModes {
   std::string failure;  ///< why there are no modes; empty if there are
 };
 
+/// Of a copy of the original under the similarity, of the same material.
+DomainModes moved(const DomainModes& original, const Similarity& similarity);
+
 struct DomainModesOptions {
   ModeOptions modes;
   TetOptions tets;

@@ -23,6 +23,7 @@ struct LameConstants {
     return {youngs_modulus * poisson_ratio / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio)),
             youngs_modulus / (2 * (1 + poisson_ratio))};
   }
+  constexpr LameConstants scaled(double factor) const { return {factor * lambda, factor * mu}; }
 };
 
 /// Place of the node pair a >= b in a packed lower triangle.

@@ -8,11 +8,26 @@
 
 namespace liana {
 
-/// Upper triangle, compressed columns, rows ascending: what CHOLMOD factors without a transpose.
+/// A pattern in compressed columns.
+struct Pattern {
+  std::vector<int> start, row;
+
+  int size() const { return static_cast<int>(start.size()) - 1; }
+};
+
+/// Lower triangle, compressed columns, rows in any order: what supernodal CHOLMOD factors without a
+/// transpose.
 struct FreeMatrix {
   std::vector<int> start, row;
   std::vector<double> value;
-  std::vector<uint32_t> dof;  ///< per column: the system's dof, 3 node + axis
+  std::vector<uint32_t> dof;    ///< per column: the system's dof, 3 node + axis
+  std::vector<uint32_t> order;  ///< nodes with free dof as they are eliminated; a place is an index into it
+  std::vector<uint32_t> slot;   ///< per column: 3 place + axis
+  /// The graph of its nodes in the same order, diagonal included.
+  Pattern upper_nodes, lower_nodes;
+  std::vector<double> mass;  ///< per entry of lower_nodes
+  bool whole_nodes =
+      true;  ///< all three dof of every node are free: the scalar pattern is the graph's, 3 by 3
 
   int size() const { return static_cast<int>(dof.size()); }
 };

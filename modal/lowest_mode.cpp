@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "mesher/base/error.h"
-#include "modal/assembly.h"
 #include "modal/strain_energy.h"
 #include "modal/subspace_iteration.h"
 
@@ -58,15 +57,15 @@ Vec3 direction_of_largest(const NodalVectors& vectors, int mode) {
 }  // namespace
 
 Modes lowest_modes(const TetMesh& mesh, const ElasticMaterial& material, std::span<const CarriedMass> carried,
-                   const ModeOptions& options) {
+                   const ModeOptions& options, std::span<const ElementScaling> scaling) {
   require(options.modes >= 1, "ask for at least one mode");
   check_held(mesh);
   const NodeMesh nodes = make_nodes(mesh, options.element);
-  System system = assemble(nodes, options.element, material);
+  System system = assemble(nodes, options.element, material, scaling);
   for (const NodeMass& lumped : lump(mesh, carried)) system.add_mass(lumped.node, lumped.mass);
   const EigenResult pairs = lowest_eigenpairs(system, held_dofs(nodes), {.modes = options.modes});
   const Eigen::VectorXd eigenvalues =
-      stiffness_quotients(nodes, system, material.poisson_ratio, pairs.vectors);
+      stiffness_quotients(nodes, system, material.poisson_ratio, pairs.vectors, scaling);
 
   const auto frequency = [&](double lambda) {
     return std::sqrt(std::max(0.0, lambda)) / (2 * kPi * system.time);

@@ -7,8 +7,8 @@
 
 #include "mesher/base/elastic_material.h"
 #include "mesher/tets/tet_mesh.h"
+#include "modal/assembly.h"
 #include "modal/carried_mass.h"
-#include "modal/node_mesh.h"
 
 namespace liana {
 
@@ -32,16 +32,17 @@ struct Modes {
   Sway sway;
   uint32_t dof = 0;
   int iterations = 0;
-  double residual = 0;  ///< max over modes of |K x − λ M x| / |K x|
+  double residual = 0;  ///< of EigenResult
   /// Max over modes of how far the assembled K's eigenvalue lies from the shape's strain energy, relative:
   /// what rounding has done to the shape of a very thin solid. The frequency's own error is about its square.
   double rounding = 0;
-  bool converged = false;  ///< residual below 1e-5, rounding below 0.1
+  bool converged = false;  ///< residual below 3e-5, rounding below 0.1
 };
 
 /// Nodes are the tet mesh's vertices, then (T10) the mid-edge nodes of make_nodes(). All nodes of root_faces
 /// are held. Throws Error{Input} when no face is held, a part hangs on nothing, or the matrix is singular.
+/// scaling: factors on the material for each tet; empty if it is uniform.
 Modes lowest_modes(const TetMesh& mesh, const ElasticMaterial& material, std::span<const CarriedMass> carried,
-                   const ModeOptions& options = {});
+                   const ModeOptions& options = {}, std::span<const ElementScaling> scaling = {});
 
 }  // namespace liana

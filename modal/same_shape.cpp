@@ -11,41 +11,11 @@ namespace {
 constexpr double kVertexTolerance = 2e-3;   // of the thickness: a plate's frequency grows with its thickness
 constexpr double kCarriedTolerance = 1e-3;  // of the extent, and of the mass
 
-Vec3 mean_position(const Mesh& mesh) {
-  Vec3 sum = Vec3::Zero();
-  for (const Vec3& p : mesh.positions) sum += p;
-  return sum / static_cast<double>(mesh.positions.size());
-}
-
-/// [Umeyama 1991] Eq. 40-43: least squares rotation, scale and translation.
-Similarity best_similarity(const Mesh& from, const Mesh& to) {
-  const Vec3 from_mean = mean_position(from), to_mean = mean_position(to);
-  Mat3 covariance = Mat3::Zero();
-  double from_variance = 0, to_variance = 0;
-  for (size_t i = 0; i < from.positions.size(); ++i) {
-    const Vec3 a = from.positions[i] - from_mean, b = to.positions[i] - to_mean;
-    covariance += b * a.transpose();
-    from_variance += a.squaredNorm(), to_variance += b.squaredNorm();
-  }
-  const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vec3 sign = Vec3::Ones();
-  sign[2] = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-  Similarity s;
-  s.rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
-  s.scale = std::sqrt(to_variance / from_variance);
-  s.translation = to_mean - s.scale * (s.rotation * from_mean);
-  return s;
-}
-
-Vec3 apply(const Similarity& s, const Vec3& p) {
-  return s.scale * (s.rotation * p) + s.translation;
-}
-
 /// Each mass of `from` must find its own partner.
 bool carried_match(const Solid& from, const Solid& to, const Similarity& s, double extent) {
   std::vector<uint8_t> taken(to.carried.size(), 0);
   for (const CarriedMass& a : from.carried) {
-    const Vec3 place = apply(s, a.position);
+    const Vec3 place = s.point(a.position);
     const double mass = a.mass * std::pow(s.scale, 3);
     bool found = false;
     for (size_t i = 0; i < to.carried.size() && !found; ++i) {
@@ -69,7 +39,7 @@ ShapeSignature shape_signature(const Solid& solid) {
   const uint64_t carried = solid.carried.size();
   signature.connectivity = hash_bytes(&carried, sizeof carried, signature.connectivity);
 
-  const Vec3 centre = mesh.positions.empty() ? Vec3::Zero() : mean_position(mesh);
+  const Vec3 centre = mesh.positions.empty() ? Vec3::Zero() : mean_position(mesh.positions);
   double variance = 0, volume = 0, area = 0;
   for (const Vec3& p : mesh.positions) variance += (p - centre).squaredNorm();
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -88,12 +58,13 @@ std::optional<Similarity> find_similarity(const Solid& from, const Solid& to) {
   const Mesh &a = *from.surface, &b = *to.surface;
   if (a.positions.size() != b.positions.size() || a.triangles != b.triangles) return {};
   if (!std::equal(from.is_root.begin(), from.is_root.end(), to.is_root.begin(), to.is_root.end())) return {};
+  if (!(from.taper == to.taper)) return {};
   if (from.carried.size() != to.carried.size() || a.positions.empty()) return {};
-  const Similarity s = best_similarity(a, b);
+  const Similarity s = best_similarity(a.positions, b.positions);
   const ShapeSignature size = shape_signature(to);
   const double allowed = kVertexTolerance * size.thickness;
   for (size_t i = 0; i < a.positions.size(); ++i)
-    if (!((apply(s, a.positions[i]) - b.positions[i]).norm() <= allowed)) return {};  // also for NaN
+    if (!((s.point(a.positions[i]) - b.positions[i]).norm() <= allowed)) return {};  // also for NaN
   if (!carried_match(from, to, s, size.extent)) return {};
   return s;
 }

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "mesher/base/mesh.h"
+#include "mesher/base/taper_law.h"
+#include "mesher/base/similarity.h"
 #include "modal/carried_mass.h"
 
 namespace liana {
@@ -15,13 +17,7 @@ struct Solid {
   const Mesh* surface = nullptr;     ///< closed, oriented outward, free of self-intersection
   std::span<const uint8_t> is_root;  ///< per triangle: 1 on the interface that is held
   std::vector<CarriedMass> carried;  ///< what hangs on it
-};
-
-/// x' = scale · rotation · x + translation
-struct Similarity {
-  Mat3 rotation = Mat3::Identity();
-  double scale = 1;
-  Vec3 translation = Vec3::Zero();  ///< m
+  TaperLaw taper = {};               ///< of E and density along it, [Wang17] Eq. 11
 };
 
 /// Numbers that equal shapes share: enough to sort by, never enough to call two shapes equal.

@@ -17,11 +17,12 @@ double density(const Mat3& gradient, const LameConstants& lame) {
 }  // namespace
 
 Eigen::VectorXd stiffness_quotients(const NodeMesh& mesh, const System& system, double poisson_ratio,
-                                    const NodalVectors& shapes) {
-  const LameConstants lame = LameConstants::of(1, poisson_ratio);
+                                    const NodalVectors& shapes, std::span<const ElementScaling> scaling) {
+  const LameConstants uniform = LameConstants::of(1, poisson_ratio);
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(shapes.cols());
   for (size_t e = 0; e < mesh.element_count(); ++e) {
     const auto nodes = mesh.element(e);
+    const LameConstants lame = uniform.scaled(scaling.empty() ? 1 : scaling[e].stiffness);
     const TetGeometry tet = element_geometry(mesh, e, system.length);
     for (Eigen::Index column = 0; column < shapes.cols(); ++column) {
       const auto u = [&](int a) -> Vec3 { return shapes.block<3, 1>(3 * nodes[a], column); };

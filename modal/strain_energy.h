@@ -13,6 +13,6 @@ namespace liana {
 /// with the assembled K its relative rounding error is about ε (ℓ/t)⁴, 0.6 % at ℓ/t = 2,000. Strains are
 /// formed from differences of displacements inside one element, and lose only ε (ℓ/t)².
 Eigen::VectorXd stiffness_quotients(const NodeMesh& mesh, const System& system, double poisson_ratio,
-                                    const NodalVectors& shapes);
+                                    const NodalVectors& shapes, std::span<const ElementScaling> scaling = {});
 
 }  // namespace liana

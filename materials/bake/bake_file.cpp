@@ -47,11 +47,35 @@ void vector(Stream& stream, Vector& value) {
   for (int axis = 0; axis < 3; ++axis) stream.number(value[axis]);
 }
 
+void flag(Writer& stream, bool value) {
+  stream.out.number(static_cast<uint8_t>(value));
+}
+void flag(Reader& stream, bool& value) {
+  value = stream.in.number<uint8_t>() != 0;
+}
+
+// The kind as its number and -1 for any.
+void match(Writer& stream, const GroupMatch& match) {
+  stream.text(match.name);
+  stream.out.number(static_cast<int32_t>(match.kind ? static_cast<int>(*match.kind) : -1));
+  stream.out.number(static_cast<int32_t>(match.level));
+}
+void match(Reader& stream, GroupMatch& match) {
+  stream.text(match.name);
+  const auto kind = stream.in.number<int32_t>();
+  if (kind < -1 || kind > 1) stream.in.fail("holds a group of neither branches nor leaves");
+  if (kind >= 0) match.kind = static_cast<DomainKind>(kind);
+  match.level = stream.in.number<int32_t>();
+}
+
 template <class Stream, class Group>
 void group(Stream& stream, Group& law) {
   const auto number = [&](const NumberRange&, auto& value) { stream.number(value); };
   for_each_number_of_group(law, number);
+  for_each_optional_number_of_group(law, number);
+  flag(stream, law.damping.constant_rayleigh);
   for_each_number_of_damping(law.damping, number);
+  match(stream, law.match);
 }
 
 void groups(Writer& stream, const std::map<std::string, GroupLaw>& laws) {
@@ -60,7 +84,7 @@ void groups(Writer& stream, const std::map<std::string, GroupLaw>& laws) {
 }
 
 void groups(Reader& stream, std::map<std::string, GroupLaw>& laws) {
-  constexpr size_t kLeastBytes = 4 + 11 * 8;
+  constexpr size_t kLeastBytes = 4 + (5 + 4) * 8 + 1 + 2 * 8 + 3 * 4;
   for (uint32_t left = stream.in.count(kLeastBytes); left > 0; --left) {
     const std::string name = stream.in.text();
     group(stream, laws[name]);
@@ -109,6 +133,8 @@ void payload(Stream& stream, BakeType& bake) {
   stream.text(bake.law.species);
   for_each_number_of_material(bake.law.default_material,
                               [&](const NumberRange&, auto& value) { stream.number(value); });
+  stream.number(bake.law.model.model);
+  for_each_number_of_model(bake.law.model, [&](const NumberRange&, auto& value) { stream.number(value); });
   groups(stream, bake.law.groups);
   constexpr size_t kLeastBytes = 3 * 4 + 20 * 8;
   stream.count(bake.domains, kLeastBytes);

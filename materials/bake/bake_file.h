@@ -11,7 +11,7 @@
 
 namespace liana {
 
-constexpr uint32_t kBakeVersion = 1;
+constexpr uint32_t kBakeVersion = 3;
 
 /// Atomic: an existing file stays as it was until the new one is complete. Throws Error{Output}, or
 /// Error{Input} when the bake itself breaks a rule that read_bake checks.

@@ -56,6 +56,7 @@ class ByteReader {
       fail("a count of " + std::to_string(count) + " is more than the file can hold");
     return count;
   }
+  void skip(size_t size) { take(size); }
   size_t left() const { return bytes_.size() - at_; }
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(Error::Kind::Input, name_ + ": " + what + " (at byte " + std::to_string(at_) + ")",

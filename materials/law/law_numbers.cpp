@@ -24,6 +24,7 @@ std::string range_problem(const NumberRange& range, double value) {
 }
 
 std::string damping_problem(const DampingLaw& damping) {
+  if (damping.constant_rayleigh) return {};
   if (damping.low_frequency > damping.high_frequency)
     return fmt::format(
         "low_frequency {} is above high_frequency {}: swap them, and low_factor with high_factor",
@@ -39,6 +40,7 @@ std::string damping_problem(const DampingLaw& damping) {
 void check(const GroupLaw& law, const std::string& where) {
   const auto in_range = [&](const NumberRange& range, double value) { check_number(range, value, where); };
   for_each_number_of_group(law, in_range);
+  for_each_optional_number_of_group(law, in_range);
   for_each_number_of_damping(law.damping, in_range);
   const std::string problem = damping_problem(law.damping);
   if (!problem.empty()) throw Error(Error::Kind::Input, where + ": " + problem, kHint);
@@ -47,6 +49,11 @@ void check(const GroupLaw& law, const std::string& where) {
 void check(const SpeciesLaw& law, const std::string& where) {
   for_each_number_of_material(law.default_material, [&](const NumberRange& range, double value) {
     check_number(range, value, where + ": default_material");
+  });
+  if (law.model.model > MaterialModel::Median)
+    throw Error(Error::Kind::Input, where + ": there is no such material model", kHint);
+  for_each_number_of_model(law.model, [&](const NumberRange& range, double value) {
+    check_number(range, value, where + ": model");
   });
   for (const auto& [name, group] : law.groups) check(group, where + ": group '" + name + "'");
   if (law.groups.empty())

@@ -35,9 +35,31 @@ void for_each_number_of_group(Group& group, Visit&& visit) {
   visit(NumberRange{"epsilon2", "", -4, 4}, group.epsilon2);
 }
 
-/// visit(NumberRange, double&) for Eq. 13 and 14 of one group.
+/// visit(NumberRange, double&) for what a group may leave out: the median model's ν, and Eq. 11.
+template <class Group, class Visit>
+void for_each_optional_number_of_group(Group& group, Visit&& visit) {
+  visit(NumberRange{"median_frequency", "Hz", 0, 1e3}, group.median_frequency);
+  visit(NumberRange{"s_max", "", 1e-3, 1e3}, group.taper.root_scaling);
+  visit(NumberRange{"s_min", "", 1e-3, 1e3}, group.taper.tip_scaling);
+  visit(NumberRange{"epsilon3", "", 0, 100}, group.taper.epsilon3);
+}
+
+/// visit(NumberRange, double&) for what the models beside the power law need; all may be left out.
+template <class Model, class Visit>
+void for_each_number_of_model(Model& model, Visit&& visit) {
+  visit(NumberRange{"trunk_frequency", "Hz", 0, 1e3}, model.trunk_frequency);
+  visit(NumberRange{"depth_scale", "", 0, 1e12}, model.depth_scale);
+  visit(NumberRange{"depth_discount", "", 1e-6, 1}, model.depth_discount);
+}
+
+/// visit(NumberRange, double&) for Eq. 13 and 14 of one group, or for its constant d_M and d_K.
 template <class Damping, class Visit>
 void for_each_number_of_damping(Damping& damping, Visit&& visit) {
+  if (damping.constant_rayleigh) {
+    visit(NumberRange{"mass_damping", "1/s", 0, 1e3}, damping.mass_damping);
+    visit(NumberRange{"stiffness_damping", "s", 0, 10}, damping.stiffness_damping);
+    return;
+  }
   visit(NumberRange{"low_frequency", "Hz", 0, 1e3}, damping.low_frequency);
   visit(NumberRange{"high_frequency", "Hz", 0, 1e3}, damping.high_frequency);
   visit(NumberRange{"low_factor", "", 0, 5}, damping.low_factor);

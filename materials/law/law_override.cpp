@@ -17,9 +17,12 @@ std::map<std::string, double*> numbers_by_key(SpeciesLaw& law) {
   const auto collect = [&](const NumberRange& range, double& value) { numbers[prefix + range.key] = &value; };
   prefix = "default_material.";
   for_each_number_of_material(law.default_material, collect);
+  prefix = "model.";
+  for_each_number_of_model(law.model, collect);
   for (auto& [name, group] : law.groups) {
     prefix = name + ".";
     for_each_number_of_group(group, collect);
+    for_each_optional_number_of_group(group, collect);
     prefix = name + ".damping.";
     for_each_number_of_damping(group.damping, collect);
   }

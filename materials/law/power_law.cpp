@@ -37,17 +37,15 @@ double stiffness_scaling(double mass_scaling, double frequency, double default_f
   return mass_scaling * ratio * ratio;
 }
 
-double taper_scaling(const TaperLaw& law, double fraction) {
-  const double t = std::pow(1 - fraction, law.epsilon3);
-  return (1 - t) * law.tip_scaling + t * law.root_scaling;
-}
-
 DomainMaterial evaluate(const GroupLaw& law, double length) {
   if (!(length > 0 && std::isfinite(length)))
     throw Error(Error::Kind::Input, fmt::format("a length of {} m has no material", length),
                 "the power law needs a positive length");
   check(law, "the power law");
-  const double frequency = frequency_of_length(law, length);
+  return evaluate_at(law, length, frequency_of_length(law, length));
+}
+
+DomainMaterial evaluate_at(const GroupLaw& law, double length, double frequency) {
   const double factor = damping_factor(law.damping, frequency);
   const RayleighDamping rayleigh = rayleigh_damping(law.damping, frequency, factor);
   return {frequency, mass_scaling_of_length(law, length), factor, rayleigh.mass, rayleigh.stiffness};

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "materials/law/species_law.h"
+#include "mesher/base/taper_law.h"
 
 namespace liana {
 
@@ -15,15 +16,5 @@ double mass_scaling_of_length(const GroupLaw& law, double length);
 
 /// [Wang17] Eq. 10: the α_k with which a domain of ν_default and α_m swings at ν.
 double stiffness_scaling(double mass_scaling, double frequency, double default_frequency);
-
-/// Stiffening and lightening along one domain, [Wang17] Eq. 11.
-struct TaperLaw {
-  double root_scaling = 1;  ///< s_max
-  double tip_scaling = 1;   ///< s_min
-  double epsilon3 = 2;
-};
-
-/// [Wang17] Eq. 11: factor on E and ρ at geodesic distance `fraction` · ℓ from the root, fraction in [0, 1].
-double taper_scaling(const TaperLaw& law, double fraction);
 
 }  // namespace liana

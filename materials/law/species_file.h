@@ -9,7 +9,10 @@
 //   [groups.level0]              # and level1, ..., leaf, or a name that the plant uses
 //   reference_frequency = { ... }
 //   [groups.level0.damping]
-//   low_factor = { ... }
+//   low_factor = { ... }         # or mass_damping and stiffness_damping: the same d_M, d_K for all
+//   [groups.frond]
+//   match = { name = "frond*", kind = "branch", level = 1 }   # claims these domains; one of the three is
+//   enough [model]                      # optional; see material_model.h name = "depth"
 //
 // A group may give c1 (Hz·m^-epsilon1, [Wang17] Eq. 8) instead of reference_frequency and reference_length.
 #pragma once

@@ -6,21 +6,37 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "mesher/base/elastic_material.h"
+#include "mesher/base/taper_law.h"
 #include "mesher/base/types.h"
 
 namespace liana {
 
-/// ξ(ν): constant below low_frequency and above high_frequency, linear between ([Wang17] Eq. 13).
+/// ξ(ν): constant below low_frequency and above high_frequency, linear between ([Wang17] Eq. 13); or, as most
+/// of the paper's own examples (Table 1), the same d_M and d_K for every domain.
 struct DampingLaw {
   double low_frequency = 1.0;   ///< Hz
   double high_frequency = 3.0;  ///< Hz
   double low_factor = 0.0065;
   double high_factor = 0.1;
-  double kappa = 2;  ///< > 1
-  double delta = 2;  ///< in [1/kappa, kappa], so that d_M and d_K are not negative
+  double kappa = 2;                ///< > 1
+  double delta = 2;                ///< in [1/kappa, kappa], so that d_M and d_K are not negative
+  bool constant_rayleigh = false;  ///< then the two below hold, and none of the above
+  double mass_damping = 0;         ///< d_M, 1/s
+  double stiffness_damping = 0;    ///< d_K, s
+};
+
+/// Which domains a group claims beside those that the plant gives its name: those that meet all that is
+/// given.
+struct GroupMatch {
+  std::string name;  ///< pattern of domain names: * any text, ? one letter, [ab] one of these; empty: any
+  std::optional<DomainKind> kind = {};
+  int level = -1;  ///< -1: any
+
+  bool empty() const { return name.empty() && !kind && level < 0; }
 };
 
 /// The law of one material group. ν = reference_frequency (ℓ / reference_length)^epsilon1, α_m = C₂
@@ -32,6 +48,9 @@ struct GroupLaw {
   double c2 = 1;  ///< m^-epsilon2
   double epsilon2 = 0;
   DampingLaw damping = {};
+  double median_frequency = 0;  ///< ν_med, Hz, of the median model; 0: what Eq. 8 gives at the median length
+  GroupMatch match = {};
+  TaperLaw taper = {};  ///< of stiffness and density along each domain; uniform unless given
 };
 
 /// What the law says of one domain.
@@ -43,17 +62,45 @@ struct DomainMaterial {
   double stiffness_damping;  ///< d_K, s
 };
 
+/// How ν follows from a domain: by [Wang17]'s own law, or by one of those it compares itself with. What mass
+/// and damping follow from it is the same for all.
+enum class MaterialModel : uint8_t {
+  PowerLaw,  ///< ν = C₁ ℓ^ε₁ (Eq. 8)
+  Constant,  ///< one Young's modulus for all, so that the main trunk has a given ν (§3)
+  Depth,     ///< stiffness scaled by s μ^level: ν = ν_default √(s μ^level) (§3, §4.4)
+  Median,    ///< ν = ν_med ℓ_med / ℓ, of the median length in the group (§4.4)
+};
+
+/// The model and what it needs beside the groups' numbers.
+struct ModelLaw {
+  MaterialModel model = MaterialModel::PowerLaw;
+  double trunk_frequency = 0;   ///< Hz, constant model; 0: what Eq. 8 gives the main trunk
+  double depth_scale = 0;       ///< s, depth model; 0: so that the main trunk has the ν of Eq. 8
+  double depth_discount = 0.1;  ///< μ in (0, 1], depth model; 0.1 as [Wang17] §7 recommends
+};
+
 struct SpeciesLaw {
   std::string species;
   ElasticMaterial default_material = {};
-  std::map<std::string, GroupLaw> groups = {};  ///< "level0", "level1", ..., "leaf", or a name of the plant's own
+  ModelLaw model = {};
+  std::map<std::string, GroupLaw> groups =
+      {};  ///< "level0", "level1", ..., "leaf", or a name of the plant's own
 
   /// The law of a group; an unnamed "level<N>" takes the deepest level given above it. Throws Error when
   /// neither exists.
   const GroupLaw& group(const std::string& name) const;
+
+  /// Which group a domain of this name, kind and level is in, which the plant puts into `given`. A match by
+  /// name goes before one by level, that before one by kind, and any before a law taken from the level above;
+  /// `given` itself counts as a level. Throws Error{Input} when two groups claim the domain with equal right,
+  /// or none does.
+  std::string group_of(const std::string& name, DomainKind kind, int level, const std::string& given) const;
 };
 
-/// [Wang17] Eq. 8, 9, 13, 15. length in m, > 0.
+/// [Wang17] Eq. 8, 9, 13, 15. length in m, > 0. Throws Error{Input} when there is no such material.
 DomainMaterial evaluate(const GroupLaw& law, double length);
+
+/// The same with another ν (Hz) than that of Eq. 8: what the other models say.
+DomainMaterial evaluate_at(const GroupLaw& law, double length, double frequency);
 
 }  // namespace liana

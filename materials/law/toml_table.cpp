@@ -84,6 +84,19 @@ std::string TomlTable::text_or(const std::string& key, const std::string& fallba
   return has(key) ? text(key) : fallback;
 }
 
+std::vector<std::string> TomlTable::texts(const std::string& key) const {
+  std::vector<std::string> texts;
+  if (!has(key)) return texts;
+  const toml::array* array = node_->table->get(key)->as_array();
+  if (!array) fail(key, "must be a list of texts, [\"a\", \"b\"]");
+  for (const toml::node& element : *array) {
+    const auto value = element.value<std::string>();
+    if (!value) fail(key, "must be a list of texts, [\"a\", \"b\"]");
+    texts.push_back(*value);
+  }
+  return texts;
+}
+
 Vec3 TomlTable::vector(const std::string& key) const {
   if (!has(key)) fail(key, "is missing");
   const toml::array* array = node_->table->get(key)->as_array();
@@ -135,5 +148,7 @@ void TomlTable::refuse_unknown_keys() const {
 }
 
 const std::filesystem::path& TomlTable::file() const { return node_->file; }
+
+size_t TomlTable::line() const { return node_->table->source().begin.line; }
 
 }  // namespace liana

@@ -25,6 +25,8 @@ class TomlTable {
   bool flag_or(const std::string& key, bool fallback) const;
   std::string text(const std::string& key) const;
   std::string text_or(const std::string& key, const std::string& fallback) const;
+  /// [ "a", "b" ]; empty when absent.
+  std::vector<std::string> texts(const std::string& key) const;
   /// Three finite numbers of magnitude at most 1e6.
   Vec3 vector(const std::string& key) const;
   Vec3 vector_or(const std::string& key, const Vec3& fallback) const;
@@ -37,6 +39,7 @@ class TomlTable {
   void refuse_unknown_keys() const;
 
   const std::filesystem::path& file() const;
+  size_t line() const;  ///< where the table begins
   /// An Error{Input} at the line of the key (of the table when the key is absent).
   [[noreturn]] void fail(const std::string& key, const std::string& what, const std::string& hint = {}) const;
 

@@ -12,21 +12,27 @@
 
 namespace liana {
 
+class BakeCache;
+
 struct BakeOptions {
   Element element = Element::T10;
   TetOptions tets;
   unsigned threads = 0;  ///< 0: one per core
   bool strict = false;   ///< throw at the first domain that cannot be made solid instead of leaving it out
+  BakeCache* cache = nullptr;  ///< solids and modes are looked up in it and added; the caller saves it
 };
 
 /// Wall clock, s. Tets and modes are made in one go; their time is split as the workers spent it.
 struct StageSeconds {
-  double read = 0;  ///< of the plant file; the caller's to fill
+  double read = 0, write = 0;  ///< of the plant and of the bake; the caller's to fill
+  double cache = 0;            ///< its file, in and out; the caller's to fill
   double surface = 0, tets = 0, modal = 0, laws = 0, total = 0;
 };
 
 struct BakeResult {
   Bake bake;  ///< species_hash is the caller's to fill: it names the file the law was read from
+  std::vector<DomainId>
+      baked_as;  ///< per domain of the plant: its id in the bake, invalid if it was left out
   StageSeconds seconds;
   std::vector<std::string> notes;  ///< what a user should know though nothing failed
 };

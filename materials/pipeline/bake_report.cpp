@@ -47,6 +47,8 @@ std::string bake_report(const BakeResult& result) {
                 {"tets", s.tets},
                 {"modal", s.modal},
                 {"laws", s.laws},
+                {"cache", s.cache},
+                {"write", s.write},
                 {"total", s.total}}},
               {"domains", Json::array()},
               {"failed", bake.failed},

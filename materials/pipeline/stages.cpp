@@ -7,9 +7,9 @@
 
 #include "materials/law/damping.h"
 #include "materials/law/law_numbers.h"
+#include "materials/law/material_model.h"
 #include "materials/law/power_law.h"
 #include "materials/pipeline/stations.h"
-#include "mesher/base/parallel.h"
 
 namespace liana {
 
@@ -20,11 +20,13 @@ Stages::Stages(const SegmentedPlant& plant, const SpeciesLaw& species, const Bak
       options_(options),
       progress_(progress),
       pieces_(plant.domains.size()) {
+  for (size_t i = 0; i < pieces_.size(); ++i) pieces_[i].instance = {i, {}};
   if (plant.domains.empty())
     throw Error(Error::Kind::Input, plant.name + ": there is no branch or leaf in it",
                 "every domain is one mesh node");
   check(species, "species '" + species.species + "'");
-  for (const Domain& domain : plant.domains) species.group(domain.group);  // throws for a group without a law
+  for (const Domain& domain : plant.domains)  // throws for a domain without a law
+    groups_.push_back(species.group_of(domain.name, domain.kind, domain.level, domain.group));
 }
 
 std::vector<DomainId> Stages::domains_in() const {
@@ -53,64 +55,25 @@ DomainId Stages::parent_of(DomainId domain) const {
   return parent;
 }
 
-void Stages::make_surfaces() {
-  progress_.begin("surface", pieces_.size());
-  parallel_for(pieces_.size(), options_.threads, [&](size_t index, unsigned) {
-    progress_.throw_if_cancelled();
-    Piece& piece = pieces_[index];
-    try {
-      piece.solid = make_solid(plant_, DomainId(index));
-      piece.material = evaluate(species_.group(plant_.domains[index].group), piece.solid.length);
-    } catch (const Error& error) {
-      if (error.kind != Error::Kind::Input) throw;
-      piece.failure = error.what();
-    }
-    progress_.advance();
-  });
-  refuse_failures();
+double Stages::weighed_volume(const Piece& piece) const {
+  return mean_taper(piece.solid.centreline, piece.taper) * piece.solid.volume;
 }
 
 double Stages::own_mass(const Piece& piece) const {
-  return piece.material.mass_scaling * species_.default_material.density * piece.solid.volume;
+  return piece.material.mass_scaling * species_.default_material.density * weighed_volume(piece);
 }
 
 void Stages::carry_descendants() {
-  for (Piece& piece : pieces_) piece.carried.clear(), piece.subtree_mass = own_mass(piece);
+  for (Piece& piece : pieces_)
+    piece.carried.clear(), piece.subtree_volume = piece.material.mass_scaling * weighed_volume(piece);
   for (size_t index = pieces_.size(); index-- > 0;) {  // children before parents
     const DomainId id(index), parent = parent_of(id);
     if (!is_in(id) || !parent.valid()) continue;
     Piece &piece = pieces_[index], &below = pieces_[parent.index()];
-    below.subtree_mass += piece.subtree_mass;
-    below.carried.push_back({piece.solid.root, piece.subtree_mass / below.material.mass_scaling});
+    below.subtree_volume += piece.subtree_volume;
+    below.carried.push_back({piece.solid.root, species_.default_material.density * piece.subtree_volume /
+                                                   below.material.mass_scaling});
   }
-}
-
-bool Stages::find_modes() {
-  const std::vector<DomainId> domains = domains_in();
-  std::vector<Solid> solids;
-  for (const DomainId id : domains) {
-    const Piece& piece = pieces_[id.index()];
-    solids.push_back({&piece.solid.surface, piece.solid.is_root, piece.carried});
-  }
-  DomainModesOptions mode_options;
-  mode_options.modes.element = options_.element;
-  mode_options.tets = options_.tets;
-  mode_options.threads = options_.threads;
-  AllModes all = solve_domains(solids, species_.default_material, mode_options, progress_);
-  tet_seconds_ += all.tet_seconds, mode_seconds_ += all.mode_seconds;
-
-  for (size_t i = 0; i < domains.size(); ++i) {
-    Piece& piece = pieces_[domains[i].index()];
-    piece.modes = std::move(all.domains[i]);
-    piece.modes.solved_as = domains[piece.modes.solved_as].index();
-    if (!piece.modes.failure.empty())
-      piece.failure = name_of(domains[i]) + ": " + piece.modes.failure;
-    else if (!piece.modes.converged)
-      piece.failure = fmt::format("{}: its lowest mode did not converge (residual {:.1e})",
-                                  name_of(domains[i]), piece.modes.residual);
-  }
-  refuse_failures();
-  return domains_in().size() == domains.size();
 }
 
 BakedDomain Stages::baked(DomainId id) const {
@@ -125,7 +88,7 @@ BakedDomain Stages::baked(DomainId id) const {
           .parent = parent_of(id),
           .kind = domain.kind,
           .level = domain.level,
-          .group = domain.group,
+          .group = groups_[id.index()],
           .length = piece.solid.length,
           .mass = own_mass(piece),
           .tets = piece.modes.tets,
@@ -142,11 +105,30 @@ BakedDomain Stages::baked(DomainId id) const {
           .stiffness_ratio = ratio * ratio};
 }
 
-Bake Stages::apply_laws() const {
+void Stages::choose_frequencies() {
+  if (species_.model.model == MaterialModel::PowerLaw) return;
+  const std::vector<DomainId> domains = domains_in();
+  std::vector<ModelledDomain> modelled;
+  for (const DomainId id : domains) {
+    const Domain& domain = plant_.domains[id.index()];
+    const Piece& piece = pieces_[id.index()];
+    modelled.push_back({groups_[id.index()], domain.kind, domain.level, piece.solid.length,
+                        piece.modes.frequencies.front()});
+  }
+  ModelFrequencies chosen = model_frequencies(species_, modelled);
+  model_notes_ = std::move(chosen.notes);
+  for (size_t i = 0; i < domains.size(); ++i)
+    pieces_[domains[i].index()].material =
+        evaluate_at(species_.group(modelled[i].group), modelled[i].length, chosen.frequencies[i]);
+}
+
+Bake Stages::apply_laws() {
   progress_.begin("laws", pieces_.size());
+  choose_frequencies();
   Bake bake;
   bake.plant = plant_.name, bake.plant_hash = plant_.source_hash, bake.law = species_;
-  std::vector<DomainId> new_id(pieces_.size());  // ids count the domains that stayed
+  std::vector<DomainId>& new_id = baked_as_;
+  new_id.assign(pieces_.size(), {});  // ids count the domains that stayed
   for (size_t index = 0; index < pieces_.size(); ++index) {
     const DomainId old_id(index);
     progress_.advance();
@@ -174,9 +156,8 @@ std::string Stages::describe_failure(DomainId id) const {
 }
 
 std::vector<std::string> Stages::notes() const {
-  std::set<std::string> used;
-  for (const Domain& domain : plant_.domains) used.insert(domain.group);
-  std::vector<std::string> notes;
+  const std::set<std::string> used(groups_.begin(), groups_.end());
+  std::vector<std::string> notes = model_notes_;
   for (const std::string& group : used) {
     const DampingLaw& damping = species_.group(group).damping;
     if (!species_.groups.contains(group))

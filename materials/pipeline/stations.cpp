@@ -1,5 +1,6 @@
 #include "materials/pipeline/stations.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "mesher/base/error.h"
@@ -31,6 +32,26 @@ std::vector<Station> stations(const std::vector<Section>& sections, const Vec3& 
     result.push_back({section.centre, std::sqrt(thin * w2 + wide * t2), std::sqrt(thin * t2 + wide * w2)});
   }
   return result;
+}
+
+double mean_taper(const std::vector<Section>& sections, const TaperLaw& law) {
+  if (law.uniform()) return 1;
+  double length = 0;
+  for (size_t i = 1; i < sections.size(); ++i) length += (sections[i].centre - sections[i - 1].centre).norm();
+  constexpr int kParts = 16;  // midpoint rule on each piece: 1e-3 of a quadratic law
+  double volume = 0, scaled = 0, before = 0;
+  for (size_t i = 1; i < sections.size(); ++i) {
+    const Section &a = sections[i - 1], &b = sections[i];
+    const double step = (b.centre - a.centre).norm();
+    for (int k = 0; k < kParts; ++k) {
+      const double t = (k + 0.5) / kParts;
+      const double part = step * (a.half_width + t * (b.half_width - a.half_width)) *
+                          (a.half_thickness + t * (b.half_thickness - a.half_thickness));
+      volume += part, scaled += part * taper_scaling(law, std::min(1.0, (before + t * step) / length));
+    }
+    before += step;
+  }
+  return volume > 0 ? scaled / volume : 1;
 }
 
 }  // namespace liana

@@ -16,4 +16,7 @@ Vec3 flat_normal(const std::vector<Section>& sections, const Vec3& soft);
 /// about these two directions.
 std::vector<Station> stations(const std::vector<Section>& sections, const Vec3& normal);
 
+/// Mean of [Wang17] Eq. 11 over the volume along the centreline: what the taper makes of the mass.
+double mean_taper(const std::vector<Section>& sections, const TaperLaw& law);
+
 }  // namespace liana

@@ -32,6 +32,10 @@ std::string read_file(const fs::path& path, size_t max_bytes) {
 }
 
 AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)) {
+  std::error_code code;
+  if (fs::is_symlink(path_, code)) path_ = fs::weakly_canonical(path_);  // the link stays
+  if (const fs::file_status status = fs::status(path_, code); fs::exists(status) && !fs::is_regular_file(status))
+    throw Error(Error::Kind::Output, path_.string() + ": is no regular file", "name another output");
   partial_ = path_;
   partial_.replace_filename(path_.stem().string() + "." + std::to_string(getpid()) + ".partial" + path_.extension().string());
 }
@@ -53,15 +57,18 @@ void AtomicFile::commit() {
 }
 
 void write_file(const fs::path& path, std::string_view bytes) {
-  AtomicFile file(path);
-  {
-    std::ofstream out(file.partial(), std::ios::binary);
+  const auto write = [&](const fs::path& to) {
+    std::ofstream out(to, std::ios::binary);
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     out.close();
     if (!out)
       throw Error(Error::Kind::Output, path.string() + ": cannot be written (" + std::strerror(errno) + ")",
                   "check that the folder exists, is writable and has space");
-  }
+  };
+  const std::string name = path.string();
+  if (name.starts_with("/dev/") || name.starts_with("/proc/")) return write(path);  // never replaced by a file
+  AtomicFile file(path);
+  write(file.partial());
   file.commit();
 }
 

@@ -6,11 +6,12 @@
 namespace liana {
 namespace {
 
-/// Finds the place near a position: a grid whose cells are much larger than the tolerance, so that a position
-/// looks into one cell, or into its neighbours when it lies within the tolerance of the cell's side.
+/// Finds the place near a position: a grid whose cells are larger than the tolerance, so that a position
+/// mostly looks into one cell, and into its neighbours when it lies within the tolerance of the cell's side.
+/// Not so large that many places could crowd into one cell.
 class PlaceGrid {
  public:
-  PlaceGrid(const Vec3& low, double tolerance) : low_(low), tolerance_(tolerance), cell_(1000 * tolerance) {}
+  PlaceGrid(const Vec3& low, double tolerance) : low_(low), tolerance_(tolerance), cell_(16 * tolerance) {}
 
   /// Index of the place within the tolerance; a new one at the end of `places` if there is none.
   uint32_t find_or_add(const Vec3& position, std::vector<Vec3>& places) {
@@ -63,6 +64,18 @@ Mesh weld(const Mesh& mesh, double relative_tolerance) {
       welded.triangles.push_back(moved);
   }
   return compacted(welded);
+}
+
+std::vector<uint32_t> find_places(const std::vector<Vec3>& positions, double tolerance,
+                                  std::vector<Vec3>& places) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : positions) box.extend(p);
+  places.clear();
+  std::vector<uint32_t> place(positions.size(), 0);
+  if (positions.empty()) return place;
+  PlaceGrid grid(box.min(), std::max(tolerance, 1e-300));
+  for (size_t i = 0; i < positions.size(); ++i) place[i] = grid.find_or_add(positions[i], places);
+  return place;
 }
 
 Mesh compacted(const Mesh& mesh) {

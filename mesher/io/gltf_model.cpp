@@ -153,7 +153,10 @@ void append_triangles(int mode, const std::vector<uint32_t>& corners, uint32_t f
 }  // namespace
 
 uint64_t load_gltf(const fs::path& path, tinygltf::Model& model) {
-  const std::string bytes = read_file(path, kMaxFileBytes);
+  return load_gltf_bytes(read_file(path, kMaxFileBytes), path, model);
+}
+
+uint64_t load_gltf_bytes(const std::string& bytes, const fs::path& path, tinygltf::Model& model) {
   Folder folder{fs::absolute(path).parent_path(), hash_bytes(bytes.data(), bytes.size())};
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(
@@ -184,7 +187,8 @@ uint64_t load_gltf(const fs::path& path, tinygltf::Model& model) {
   return folder.hash;
 }
 
-Mesh gltf_mesh(const tinygltf::Model& model, int mesh, const std::string& where) {
+Mesh gltf_mesh(const tinygltf::Model& model, int mesh, const std::string& where,
+               std::vector<int>* materials) {
   if (mesh < 0 || size_t(mesh) >= model.meshes.size())
     throw Error(Error::Kind::Input, fmt::format("{}: names mesh {}, which does not exist", where, mesh),
                 kExportAgain);
@@ -211,6 +215,7 @@ Mesh gltf_mesh(const tinygltf::Model& model, int mesh, const std::string& where)
                   kExportAgain);
     append_triangles(mode, corners, static_cast<uint32_t>(result.positions.size()), result.triangles);
     result.positions.insert(result.positions.end(), positions.begin(), positions.end());
+    if (materials) materials->resize(result.triangles.size(), primitive.material);
   }
   if (result.triangles.empty())
     throw Error(Error::Kind::Input, where + ": its mesh is empty",

@@ -3,15 +3,17 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <queue>
 #include <unordered_set>
 
 #include "mesher/base/error.h"
+#include "mesher/base/files.h"
+#include "mesher/base/mesh_checks.h"
 #include "mesher/base/weld.h"
 #include "mesher/io/gltf_model.h"
 #include "mesher/io/gltf_nodes.h"
+#include "mesher/io/leaf_names.h"
 #include "mesher/io/plant_file.h"
 
 namespace liana {
@@ -19,17 +21,6 @@ namespace {
 
 constexpr size_t kMaxTriangles = 50'000'000;  // of all domains: shared meshes could multiply a small file
 constexpr double kMaxCoordinate = 1e4;        // m
-
-/// "leaf", "leaves", "blade" or "petal", any case, as a whole word of the name or at its start ("Leaf.012").
-bool named_as_leaf(const std::string& name) {
-  std::string lower(name.size(), ' ');
-  std::transform(name.begin(), name.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
-  const auto is_letter = [&](size_t i) { return i < lower.size() && std::isalpha((unsigned char)lower[i]); };
-  for (const std::string_view word : {"leaf", "leaves", "blade", "petal"})
-    for (size_t at = lower.find(word); at != std::string::npos; at = lower.find(word, at + 1))
-      if (at == 0 || (!is_letter(at - 1) && !is_letter(at + word.size()))) return true;
-  return false;
-}
 
 /// kind, group and thickness from extras.liana, and the kind from the name where it is silent.
 void read_extras(const tinygltf::Node& node, const std::string& where, Domain& domain) {
@@ -91,38 +82,84 @@ std::string unique_name(const std::string& name, std::unordered_set<std::string>
   return unique;
 }
 
-Mesh world_surface(const tinygltf::Model& model, const GltfNode& node, const std::string& where) {
-  Mesh mesh = gltf_mesh(model, node.mesh, where);
+/// Positions in metres, wound as the node's transform leaves it.
+Mesh world_mesh(const tinygltf::Model& model, const GltfNode& node, double scale, const std::string& where,
+                std::vector<int>* materials = nullptr) {
+  Mesh mesh = gltf_mesh(model, node.mesh, where, materials);
   for (Vec3& p : mesh.positions) {
-    p = node.to_world * p;
+    p = scale * (node.to_world * p);
     if (!(p.cwiseAbs().maxCoeff() <= kMaxCoordinate))
       throw Error(Error::Kind::Input, fmt::format("{}: reaches further than {} m", where, kMaxCoordinate),
-                  "lengths are in metres: scale the plant");
+                  "lengths are in metres: scale the plant, or say in which unit it is with --unit cm or mm");
   }
   if (node.to_world.linear().determinant() < 0)
     for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  Mesh welded = weld(mesh);
-  double area = 0;
-  for (const Triangle& t : welded.triangles) {
-    const Vec3& a = welded.positions[t[0]];
-    area += (welded.positions[t[1]] - a).cross(welded.positions[t[2]] - a).norm() / 2;
-  }
-  if (!(area > 1e-18))
+  return mesh;
+}
+
+Mesh world_surface(const tinygltf::Model& model, const GltfNode& node, double scale,
+                   const std::string& where) {
+  Mesh welded = weld(world_mesh(model, node, scale, where));
+  if (!(surface_area(welded) > 1e-18))
     throw Error(Error::Kind::Input, where + ": its surface has no area",
                 "remove the node or give it a surface");
   return welded;
 }
 
-}  // namespace
+/// The meshes of the scene as one, for a file that does not say what grows from what.
+TriangleSoup merged(const tinygltf::Model& model, const std::vector<GltfNode>& nodes, double scale,
+                    const std::string& file) {
+  TriangleSoup soup;
+  for (const int index : domain_nodes(nodes, file)) {
+    const GltfNode& node = nodes[index];
+    std::vector<int> materials;
+    const Mesh mesh =
+        world_mesh(model, node, scale, fmt::format("{}: node '{}'", file, node.name), &materials);
+    const auto first = static_cast<uint32_t>(soup.positions.size());
+    soup.positions.insert(soup.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+      const Triangle& t = mesh.triangles[i];
+      soup.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+      if (i == 0 || materials[i] != materials[i - 1]) {
+        const bool named = materials[i] >= 0 && size_t(materials[i]) < model.materials.size();
+        soup.labels.push_back({node.name, named ? model.materials[materials[i]].name : ""});
+      }
+      soup.label.push_back(static_cast<uint32_t>(soup.labels.size() - 1));
+    }
+    if (soup.triangles.size() > kMaxTriangles)
+      throw Error(Error::Kind::Input, fmt::format("{}: more than {} triangles", file, kMaxTriangles),
+                  "simplify the plant");
+  }
+  return soup;
+}
 
-SegmentedPlant read_plant(const std::filesystem::path& path) {
-  const std::string file = path.string();
-  tinygltf::Model model;
+bool is_one_shell(const tinygltf::Model& model, const GltfNode& node, const std::string& file) {
+  uint32_t parts = 0;
+  connected_parts(
+      find_adjacency(weld(gltf_mesh(model, node.mesh, fmt::format("{}: node '{}'", file, node.name)))),
+      &parts);
+  return parts == 1;
+}
+
+/// Whether the file itself says which parts there are and what grows from what; see read_gltf_plant.
+bool is_segmented(const tinygltf::Model& model, const std::vector<GltfNode>& nodes, const std::string& file) {
+  const std::vector<int> domains = domain_nodes(nodes, file);
+  size_t below = 0, whole = 0;
+  for (const int index : domains) {
+    const tinygltf::Value& extras = model.nodes[index].extras;
+    if (extras.IsObject() && extras.Has("liana")) return true;
+    bool hangs = false;
+    for (int up = nodes[index].parent; up >= 0 && !hangs; up = nodes[up].parent) hangs = nodes[up].mesh >= 0;
+    below += hangs;
+  }
+  if (below == 0 && domains.size() > 1) return false;
+  for (const int index : domains) whole += is_one_shell(model, nodes[index], file);
+  return 2 * whole >= domains.size();
+}
+
+SegmentedPlant segmented(const tinygltf::Model& model, const std::vector<GltfNode>& nodes, double scale,
+                         const std::string& file) {
   SegmentedPlant plant;
-  plant.source_hash = load_gltf(path, model);
-  plant.name = path.stem().string();
-  const std::vector<GltfNode> nodes = gltf_nodes(model, file);
-
   std::vector<DomainId> domain_of(nodes.size());  // of the node or of its nearest ancestor with a mesh
   std::unordered_set<std::string> names;
   size_t triangles = 0;
@@ -140,7 +177,7 @@ SegmentedPlant read_plant(const std::filesystem::path& path) {
                   "parent it to the node of the branch it grows from; only trunks stand alone");
     if (domain.group.empty())
       domain.group = domain.kind == DomainKind::Leaf ? "leaf" : fmt::format("level{}", domain.level);
-    domain.surface = world_surface(model, node, where);
+    domain.surface = world_surface(model, node, scale, where);
     domain.name = unique_name(node.name, names);
     triangles += domain.surface.triangles.size();
     if (triangles > kMaxTriangles)
@@ -149,6 +186,34 @@ SegmentedPlant read_plant(const std::filesystem::path& path) {
     domain_of[index] = DomainId(plant.domains.size());
     plant.domains.push_back(std::move(domain));
   }
+  return plant;
+}
+
+}  // namespace
+
+GltfPlant read_gltf_plant(const std::string& bytes, const std::filesystem::path& path, double scale,
+                          bool ignore_hierarchy) {
+  const std::string file = path.string();
+  tinygltf::Model model;
+  GltfPlant result;
+  result.source_hash = load_gltf_bytes(bytes, path, model);
+  const std::vector<GltfNode> nodes = gltf_nodes(model, file);
+  result.segmented = !ignore_hierarchy && is_segmented(model, nodes, file);
+  if (result.segmented)
+    result.plant = segmented(model, nodes, scale, file);
+  else
+    result.soup = merged(model, nodes, scale, file);
+  result.plant.source_hash = result.source_hash;
+  result.plant.name = path.stem().string();
+  return result;
+}
+
+SegmentedPlant read_plant(const std::filesystem::path& path) {
+  tinygltf::Model model;
+  const uint64_t hash = load_gltf(path, model);
+  SegmentedPlant plant = segmented(model, gltf_nodes(model, path.string()), 1, path.string());
+  plant.source_hash = hash;
+  plant.name = path.stem().string();
   return plant;
 }
 

@@ -5,9 +5,17 @@
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 
+#include "mesher/surface/clearance.h"
+
 namespace liana {
 
 bool self_intersects(const Mesh& mesh) {
+  constexpr size_t kQuickProof = 20'000;  // triangles; its sweep grows faster than linearly
+  if (mesh.triangles.size() <= kQuickProof && surely_clear(mesh)) return false;
+  return self_intersects_exactly(mesh);
+}
+
+bool self_intersects_exactly(const Mesh& mesh) {
   namespace pmp = CGAL::Polygon_mesh_processing;
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   std::vector<Kernel::Point_3> points;

@@ -11,7 +11,7 @@ namespace liana {
 namespace {
 
 constexpr const char* kUnderstood =
-    "liana inspect reads plants (.glb, .gltf), bakes (.bake), species and scenes (.toml) and reports (.json)";
+    "liana inspect reads plants (.glb, .gltf, .obj, .ply, .mtg, .json), bakes (.bake), species and scenes (.toml) and reports (.json)";
 
 bool is_json(std::string_view bytes) {
   const size_t first = bytes.find_first_not_of(" \t\r\n");
@@ -33,12 +33,9 @@ std::string inspect_file(const std::filesystem::path& path, const InspectOptions
   const std::string bytes = read_file(path);
   const std::string extension = path.extension().string();
   if (is_bake(bytes) || extension == ".bake") return inspect_bake(path, options);
-  if (bytes.starts_with("glTF") || extension == ".glb" || extension == ".gltf")
-    return inspect_plant(path, options);
+  if (is_plant_file(path, bytes)) return inspect_plant(path, options);
   if (extension == ".toml") return inspect_toml(path);
-  if (is_json(bytes))
-    return bytes.find("\"meshes\"") != std::string::npos ? inspect_plant(path, options)
-                                                         : inspect_report(path);
+  if (is_json(bytes)) return inspect_report(path);
   throw Error(Error::Kind::Input, path.string() + ": is of no kind that is known here", kUnderstood);
 }
 

@@ -4,14 +4,17 @@
 #include <filesystem>
 #include <string>
 
+#include "mesher/shells/load_plant.h"
+
 namespace liana {
 
 struct InspectOptions {
   bool all_domains = false;  ///< also list every domain
+  LoadOptions load;          ///< of a plant
 };
 
-/// Any file of ours (bake, species, scene, report) or a plant (.glb, .gltf), told apart by content rather
-/// than name. Throws Error{Input} for a file that is none of these, saying which are, or is damaged.
+/// Any file of ours (bake, species, scene, report) or a plant (mesh or skeleton), told apart by content
+/// rather than name. Throws Error{Input} for a file that is none of these, saying which are, or is damaged.
 std::string inspect_file(const std::filesystem::path& path, const InspectOptions& options = {});
 
 std::string inspect_plant(const std::filesystem::path& path, const InspectOptions& options);

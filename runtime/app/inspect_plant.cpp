@@ -5,7 +5,6 @@
 #include <map>
 
 #include "mesher/base/hash.h"
-#include "mesher/io/plant_file.h"
 #include "runtime/app/inspect.h"
 
 namespace liana {
@@ -65,24 +64,45 @@ std::string summary(const SegmentedPlant& plant) {
 }
 
 std::string domain_list(const SegmentedPlant& plant) {
-  constexpr const char* kLine = "{:>5}  {:<24} {:>6}  {:<7} {:>5}  {:<10} {:>9} {:>9}  {}\n";
-  std::string text =
-      fmt::format(kLine, "id", "name", "parent", "kind", "level", "group", "triangles", "size, m", "surface");
+  constexpr const char* kLine = "{:>5}  {:<24} {:>6} {:>5}  {:<7} {:>5}  {:<10} {:>9} {:>9}  {}\n";
+  std::string text = fmt::format(kLine, "id", "name", "parent", "sure", "kind", "level", "group", "triangles",
+                                 "size, m", "surface");
   for (size_t id = 0; id < plant.domains.size(); ++id) {
     const Domain& domain = plant.domains[id];
     text += fmt::format(
         kLine, id, domain.name, domain.parent.valid() ? std::to_string(domain.parent.value) : "-",
-        domain.kind == DomainKind::Leaf ? "leaf" : "branch", domain.level, domain.group,
-        domain.surface.triangles.size(), fmt::format("{:.3g}", box_of(domain.surface).diagonal().norm()),
-        closedness(domain.surface));
+        fmt::format("{:.2f}", domain.parent_confidence), domain.kind == DomainKind::Leaf ? "leaf" : "branch",
+        domain.level, domain.group, domain.surface.triangles.size(),
+        fmt::format("{:.3g}", box_of(domain.surface).diagonal().norm()), closedness(domain.surface));
   }
+  return text;
+}
+
+/// Domains whose parent is more likely wrong than right, the least sure first.
+std::string doubtful_list(const SegmentedPlant& plant) {
+  std::vector<size_t> doubtful;
+  for (size_t id = 0; id < plant.domains.size(); ++id)
+    if (plant.domains[id].parent_confidence < 0.5) doubtful.push_back(id);
+  if (doubtful.empty()) return "";
+  std::stable_sort(doubtful.begin(), doubtful.end(), [&](size_t a, size_t b) {
+    return plant.domains[a].parent_confidence < plant.domains[b].parent_confidence;
+  });
+  constexpr size_t kShown = 20;
+  std::string text = fmt::format("\ndoubtful parents ({}):\n", doubtful.size());
+  for (size_t i = 0; i < std::min(doubtful.size(), kShown); ++i) {
+    const Domain& domain = plant.domains[doubtful[i]];
+    text += fmt::format("  {:<24} on {:<24} {:.2f}\n", domain.name,
+                        domain.parent.valid() ? plant.domains[domain.parent.index()].name : "the ground",
+                        domain.parent_confidence);
+  }
+  if (doubtful.size() > kShown) text += fmt::format("  and {} more\n", doubtful.size() - kShown);
   return text;
 }
 
 }  // namespace
 
 std::string inspect_plant(const std::filesystem::path& path, const InspectOptions& options) {
-  const SegmentedPlant plant = read_plant(path);
+  const SegmentedPlant plant = load_plant(path, options.load);
   Box box;
   size_t triangles = 0;
   for (const Domain& domain : plant.domains) {
@@ -91,12 +111,15 @@ std::string inspect_plant(const std::filesystem::path& path, const InspectOption
   }
   const Vec3 size = box.sizes();
   std::string text = fmt::format(
-      "{}: a segmented plant\n{} domains, {} triangles (welded by position), {:.3g} x {:.3g} x {:.3g} m "
+      "{}: a plant\n{} domains, {} triangles (welded by position), {:.3g} x {:.3g} x {:.3g} m "
       "(height is y; "
       "metres, +Y up)\nhash {}\n\n",
       path.string(), plant.domains.size(), triangles, size.x(), size.y(), size.z(),
       hash_text(plant.source_hash));
+  for (const std::string& note : plant.notes) text += "- " + note + "\n";
+  if (!plant.notes.empty()) text += "\n";
   text += summary(plant);
+  text += doubtful_list(plant);
   if (options.all_domains) return text + "\n" + domain_list(plant);
   return text + "(every domain: --domains)\n";
 }

@@ -73,5 +73,9 @@ int main(int argc, char** argv) {
              "report it with the command and the file");
     return liana::kInputError;
   }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
+    complain("what it has to say cannot be written", "check where its output goes to");
+    return liana::kInputError;
+  }
   return exit_code;
 }

@@ -6,6 +6,7 @@
 #include "materials/law/species_file.h"
 #include "mesher/base/error.h"
 #include "runtime/app/inspect.h"
+#include "runtime/app/plant_options.h"
 #include "runtime/app/verbs.h"
 
 namespace liana {
@@ -31,7 +32,9 @@ void add_inspect_verb(CLI::App& app, int&) {
   auto arguments = std::make_shared<InspectArguments>();
   CLI::App* verb =
       app.add_subcommand("inspect", "Say what is in a file: a plant, bake, species, scene or report");
-  verb->add_option("file", arguments->file, "A .glb, .gltf, .bake, .toml or .json file");
+  verb->add_option("file", arguments->file,
+                   "A plant (.glb, .gltf, .obj, .ply, .mtg, .json), .bake, .toml or report");
+  add_plant_options(*verb, arguments->options.load);
   verb->add_flag("--domains", arguments->options.all_domains, "List every branch and leaf");
   verb->add_flag("--species", arguments->species, "List the species presets, or show the one named");
   verb->footer(

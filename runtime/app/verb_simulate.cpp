@@ -75,7 +75,12 @@ std::string report_json(const World& world, double total_seconds, double render_
                      {"physics", report.seconds.physics},
                      {"growth", report.seconds.growth},
                      {"collision", report.seconds.collision},
+                     {"wind", report.seconds.wind},
                      {"render", render_seconds}};
+  if (report.air)
+    json["air"] = {{"particles", report.air->particles}, {"substeps", report.air->substeps},
+                   {"emitted", report.air->emitted},     {"refused", report.air->refused},
+                   {"left", report.air->left},           {"limited", report.air->limited}};
   json["notes"] = world.notes();
   return json.dump(2) + "\n";
 }
@@ -87,6 +92,14 @@ void print_summary(const World& world, double total_seconds, double render_secon
              report.particles, report.anchors, 1e3 * report.max_penetration, hash_text(world.state_hash()));
   fmt::print("seconds: growth {:.2f}, collision {:.2f}, physics {:.2f}, render {:.2f}, total {:.2f}\n", s.growth,
              s.collision, s.physics, render_seconds, total_seconds);
+  if (report.air) {
+    fmt::print("air: {} particles, {} substeps in {:.2f} s; {} emitted, {} left the domain\n", report.air->particles,
+               report.air->substeps, s.wind, report.air->emitted, report.air->left);
+    if (report.air->refused > 0)
+      fmt::print("note: {} air particles found no room (max_particles in [wind.air])\n", report.air->refused);
+    if (report.air->limited > 0)
+      fmt::print("note: {} air velocities were cut to twice the speed of sound\n", report.air->limited);
+  }
   if (report.redone_steps > 0) fmt::print("note: {} steps were redone with finer substeps\n", report.redone_steps);
   if (report.lost_steps > 0) fmt::print("note: {} steps did not stay finite and were stopped\n", report.lost_steps);
   for (const std::string& note : world.notes()) fmt::print("note: {}\n", note);

@@ -208,6 +208,13 @@ void Climber::hold_on_again(Plant& plant, const Surroundings& around) {
   }
 }
 
+void Climber::mark_growing(const Plant& plant, std::vector<uint8_t>& growing) const {
+  growing.assign(plant.particles.size(), 0);
+  for (const Shoot& shoot : shoots_)
+    if (shoot.growing) growing[plant.branches[shoot.branch.index()].particles.back().index()] = 1;
+  leaves_.mark_growing(plant, growing);
+}
+
 void Climber::recalibrate_changed(Plant& plant, GrowthReport& report) {
   for (const Shoot& shoot : shoots_) {
     if (!shoot.growing) continue;

@@ -41,6 +41,9 @@ class Climber {
   GrowthReport grow(Plant& plant, std::span<const SdfObstacle* const> obstacles, const Vec3& to_sun,
                     double dt_growth);
 
+  /// One flag per particle of the plant: 1 for tips and leaves that are not full-grown.
+  void mark_growing(const Plant& plant, std::vector<uint8_t>& growing) const;
+
   const ClimberParameters& parameters() const { return parameters_; }
 
  private:

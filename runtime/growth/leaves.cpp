@@ -99,4 +99,10 @@ void Leaves::grow(Plant& plant, const Surroundings& around, double dt, const Spe
   }
 }
 
+void Leaves::mark_growing(const Plant& plant, std::vector<uint8_t>& growing) const {
+  for (size_t i = first_growing_; i < leaves_.size(); ++i)
+    if (leaves_[i].age < parameters_.seconds_to_full)
+      for (const ParticleId id : plant.branches[leaves_[i].branch.index()].particles) growing[id.index()] = 1;
+}
+
 }  // namespace liana

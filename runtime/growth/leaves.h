@@ -19,6 +19,9 @@ class Leaves {
   /// Enlarges and turns the leaves that are not full-grown.
   void grow(Plant& plant, const Surroundings& around, double dt, const SpeciesLaw& law);
 
+  /// Sets the flags of the particles whose leaves are not full-grown.
+  void mark_growing(const Plant& plant, std::vector<uint8_t>& growing) const;
+
   size_t count() const { return leaves_.size(); }
 
  private:

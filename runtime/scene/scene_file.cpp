@@ -5,6 +5,7 @@
 #include "materials/law/toml_table.h"
 #include "mesher/base/error.h"
 #include "mesher/io/plant_file.h"
+#include "runtime/scene/scene_wind.h"
 #include "runtime/sim/collision/box_mesh.h"
 
 namespace liana {
@@ -107,13 +108,7 @@ Scene read_scene(const std::filesystem::path& path) {
     if (scene.to_sun.norm() < 1e-9) sun->fail("direction", "must not be zero");
     sun->refuse_unknown_keys();
   }
-  if (const auto wind = table.table("wind")) {
-    scene.wind.velocity = wind->vector("velocity");
-    scene.wind.gust = wind->number_or("gust", scene.wind.gust, 0, 3);
-    scene.wind.gust_period = wind->number_or("gust_period", scene.wind.gust_period, 1, 30);
-    if (scene.wind.velocity.norm() > 100) wind->fail("velocity", "is above 100 m/s, which no plant meets");
-    wind->refuse_unknown_keys();
-  }
+  if (const auto wind = table.table("wind")) scene.wind = read_scene_wind(*wind, scene.seed);
   if (const auto camera = table.table("camera")) {
     scene.camera = SceneCamera{camera->vector("eye"), camera->vector("target"),
                                camera->number_or("vertical_angle", 40, 5, 120) * kPi / 180};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesher/base/mesh.h"
+#include "runtime/wind/sph_wind.h"
 
 namespace liana {
 
@@ -42,10 +43,16 @@ struct ScenePluck {
   Vec3 velocity;       ///< of the tip, m/s
 };
 
+/// The wind everywhere (none when the velocity is zero), and air particles that emitters blow.
 struct SceneWind {
+  enum class Kind { Gust, Ambient };
+  Kind kind = Kind::Gust;
   Vec3 velocity = Vec3::Zero();  ///< mean, m/s
-  double gust = 0.4;             ///< standard deviation of the speed over its mean
-  double gust_period = 6;        ///< s, from one strong gust to the next, about
+  double gust = 0.4;             ///< Gust: standard deviation of the speed over its mean
+  double gust_period = 6;        ///< Gust: s, from one strong gust to the next, about
+  AmbientParameters ambient;     ///< Ambient: mean and seed are set from this table and the scene
+  std::optional<SphWindParameters> air;
+  bool show_air = false;         ///< draw the air particles
 };
 
 struct SceneCamera {

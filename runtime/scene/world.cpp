@@ -8,12 +8,13 @@
 #include "materials/bake/bake_file.h"
 #include "materials/law/species_file.h"
 #include "mesher/base/error.h"
+#include "mesher/base/hash.h"
 #include "mesher/base/nearest_word.h"
 #include "mesher/base/parallel.h"
 #include "mesher/base/stopwatch.h"
 #include "runtime/sim/plant_from_bake.h"
 #include "runtime/sim/state_hash.h"
-#include "runtime/wind/wind_forces.h"
+#include "runtime/view/air_drawing.h"
 
 namespace liana {
 namespace {
@@ -40,15 +41,6 @@ std::vector<const SdfObstacle*> pointers_to(const std::vector<std::unique_ptr<Sd
   return pointers;
 }
 
-GustParameters gusts(const Scene& scene) {
-  GustParameters gusts;
-  gusts.mean = scene.wind.velocity;
-  gusts.intensity = scene.wind.gust;
-  gusts.peak_frequency = 1 / scene.wind.gust_period;
-  gusts.seed = scene.seed;
-  return gusts;
-}
-
 }  // namespace
 
 World::World(const Scene& scene, unsigned threads)
@@ -56,8 +48,7 @@ World::World(const Scene& scene, unsigned threads)
       threads_(threads),
       obstacles_(obstacles_of(scene)),
       solids_(pointers_to(obstacles_)),
-      open_wind_(gusts(scene)),
-      wind_(open_wind_, solids_, kGroundHeight) {
+      wind_(scene, solids_, kGroundHeight, threads) {
   for (const ScenePlant& entry : scene.plants) add_baked(entry);
   for (size_t i = 0; i < scene.climbers.size(); ++i) add_climber(scene.climbers[i], scene.seed + i);
 }
@@ -137,10 +128,27 @@ void World::add_climber(const SceneClimber& entry, uint64_t seed) {
 
 void World::step() {
   const PhaseSeconds before = report().seconds;
+  if (wind_.has_air()) {
+    // The air meets all plants at once, between their growth and their steps.
+    parallel_for(inhabitants_.size(), threads_, [&](size_t i, unsigned) { grow(*inhabitants_[i]); });
+    in_wind_.clear();
+    for (const auto& inhabitant : inhabitants_) in_wind_.push_back({&inhabitant->plant, inhabitant->growing});
+    wind_.advance(in_wind_, time(), scene_.time_step);
+  }
   parallel_for(inhabitants_.size(), threads_, [&](size_t i, unsigned) { step_inhabitant(i); });
+  if (wind_.has_air()) wind_.react(in_wind_);
   ++steps_;
   const PhaseSeconds after = report().seconds;
-  last_step_ = {after.growth - before.growth, after.collision - before.collision, after.physics - before.physics};
+  last_step_ = {after.growth - before.growth, after.collision - before.collision, after.physics - before.physics,
+                after.wind - before.wind};
+}
+
+void World::grow(Inhabitant& self) {
+  self.report.seconds.growth += timed([&] {
+    if (!self.climber) return;
+    self.climber->grow(self.plant, solids_, scene_.to_sun, self.growth_speed * scene_.time_step);
+    self.climber->mark_growing(self.plant, self.growing);
+  });
 }
 
 void World::step_inhabitant(size_t index) {
@@ -148,13 +156,11 @@ void World::step_inhabitant(size_t index) {
   WorldReport& report = self.report;
   self.springs.clear();
   pluck(index);
-  report.seconds.growth += timed([&] {
-    if (self.climber) self.climber->grow(self.plant, solids_, scene_.to_sun, self.growth_speed * scene_.time_step);
-  });
+  if (!wind_.has_air()) grow(self);
   const Stopwatch watch;
-  if (scene_.wind.velocity.norm() > 0) add_wind(self.plant, wind_, time(), {}, self.springs);
+  wind_.add_to(index, self.plant, time(), self.springs, self.wrenches);
   if (grabbed_ && grabbed_->plant == index) self.springs.push_back(grabbed_->spring);
-  const ContactStepReport done = self.stepper.step(self.plant, {solids_, kGroundHeight}, {}, self.springs,
+  const ContactStepReport done = self.stepper.step(self.plant, {solids_, kGroundHeight}, self.wrenches, self.springs,
                                                    {.dt = scene_.time_step, .gravity = scene_.gravity});
   report.max_penetration = std::max(report.max_penetration, done.contacts.max_penetration);
   report.contact_passes += static_cast<size_t>(done.passes - 1);
@@ -178,6 +184,7 @@ void World::add_to(DrawScene& scene, bool names) const {
   for (const SceneObstacle& obstacle : scene_.obstacles)
     scene.meshes.push_back({obstacle.mesh, obstacle.color, obstacle.bricks, obstacle.name});
   scene.to_sun = scene_.to_sun.normalized();
+  if (wind_.has_air() && scene_.wind.show_air) add_air(wind_.air()->air(), scene);
 }
 
 Camera World::camera() const {
@@ -212,6 +219,8 @@ WorldReport World::report() const {
     total.seconds.collision += own.seconds.collision;
     total.seconds.physics += own.seconds.physics;
   }
+  total.seconds.wind = wind_.seconds();
+  if (wind_.has_air()) total.air = wind_.air()->report();
   return total;
 }
 
@@ -224,12 +233,17 @@ SimulationStats World::stats() const {
           .growth_ms = 1e3 * last_step_.growth,
           .collision_ms = 1e3 * last_step_.collision,
           .physics_ms = 1e3 * last_step_.physics,
+          .wind_ms = 1e3 * last_step_.wind,
           .redone_steps = now.redone_steps};
 }
 
 uint64_t World::state_hash() const {
   uint64_t hash = 0;
   for (const auto& inhabitant : inhabitants_) hash = liana::state_hash(inhabitant->plant, hash);
+  if (wind_.has_air()) {
+    const SphAir& air = wind_.air()->air();
+    hash = hash_bytes(air.states(), air.size() * sizeof(AirState), hash);
+  }
   return hash;
 }
 

@@ -10,15 +10,15 @@
 #include "runtime/sim/collision/contact_step.h"
 #include "runtime/view/camera.h"
 #include "runtime/view/plant_drawing.h"
+#include "runtime/scene/world_wind.h"
 #include "runtime/view/simulation_view.h"
-#include "runtime/wind/sheltered_wind.h"
-#include "runtime/wind/steady_gust_wind.h"
 
 namespace liana {
 
 /// Seconds of work since the start, summed over threads.
 struct PhaseSeconds {
   double growth = 0, collision = 0, physics = 0;
+  double wind = 0;  ///< air particles; wall clock
 };
 
 /// What happened since the start.
@@ -27,6 +27,7 @@ struct WorldReport {
   double max_penetration = 0;  ///< m, deepest that any particle ever was in an obstacle or the ground
   size_t redone_steps = 0;     ///< steps that the solver took again with finer substeps
   size_t contact_passes = 0;     ///< taken again because a contact showed only at the step's end
+  std::optional<SphWindReport> air;  ///< absent without emitters
   size_t lost_steps = 0;       ///< steps that did not stay finite and were stopped
   PhaseSeconds seconds;
 };
@@ -62,6 +63,8 @@ class World final : public Simulation {
     double growth_speed = 1;
     PlantLook look;
     std::vector<WorldSpring> springs;  // wind, grab and contacts of the step
+    std::vector<Wrench> wrenches;      // the air's pressure
+    std::vector<uint8_t> growing;      // per particle, of a climber
     WorldReport report;
   };
   struct Pluck {
@@ -78,6 +81,7 @@ class World final : public Simulation {
   double time() const { return static_cast<double>(steps_) * scene_.time_step; }
   void add_baked(const ScenePlant& entry);
   void add_climber(const SceneClimber& entry, uint64_t seed);
+  void grow(Inhabitant& self);
   void add_pluck(const ScenePluck& entry, const Bake& bake);
   void pluck(size_t index);
   void step_inhabitant(size_t index);
@@ -87,9 +91,9 @@ class World final : public Simulation {
   unsigned threads_;
   std::vector<std::unique_ptr<SdfObstacle>> obstacles_;
   std::vector<const SdfObstacle*> solids_;
-  SteadyGustWind open_wind_;
-  ShelteredWind wind_;  // the same, calmed by obstacles and the ground
+  WorldWind wind_;
   std::vector<std::unique_ptr<Inhabitant>> inhabitants_;
+  std::vector<PlantInWind> in_wind_;
   std::optional<Grab> grabbed_;
   std::vector<Pluck> plucks_;
   size_t steps_ = 0;

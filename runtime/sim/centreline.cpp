@@ -6,7 +6,8 @@
 
 namespace liana {
 
-Centreline::Centreline(const BakedDomain& domain) : stations_(domain.centreline) {
+Centreline::Centreline(const BakedDomain& domain, const TaperLaw& taper)
+    : stations_(domain.centreline), taper_(taper) {
   arc_.push_back(0);
   for (size_t i = 0; i < stations_.size(); ++i) {
     if (i > 0) arc_.push_back(arc_.back() + (stations_[i].position - stations_[i - 1].position).norm());
@@ -40,6 +41,14 @@ double Centreline::volume_share(double s0, double s1) const {
     sum += section.half_width * section.half_thickness;
   }
   return sum * (s1 - s0) / kParts;
+}
+
+double Centreline::material_scaling(double s) const {
+  return taper_.uniform() ? 1 : taper_scaling(taper_, std::clamp(s / length(), 0.0, 1.0));
+}
+
+double Centreline::mass_share(double s0, double s1) const {
+  return volume_share(s0, s1) * material_scaling((s0 + s1) / 2);
 }
 
 double Centreline::mean_diameter() const {

@@ -66,9 +66,11 @@ void check(const BakedDomain& domain) {
 void append_chain(Plant& plant, const Bake& bake, DomainId id, double spacing) {
   const BakedDomain& domain = bake.domains[id.index()];
   check(domain);
-  const Centreline line(domain);
+  const Centreline line(domain, bake.law.groups.empty() ? TaperLaw() : bake.law.group(domain.group).taper);
   const size_t n = particle_count(domain, line, spacing);
-  const double h = line.length() / static_cast<double>(n), volume = line.volume_share(0, line.length());
+  const double h = line.length() / static_cast<double>(n);
+  double shares = 0;
+  for (size_t i = 0; i < n; ++i) shares += line.mass_share(h * i, h * (i + 1));
   const double poisson = bake.law.default_material.poisson_ratio;
 
   Branch branch{.parent = domain.parent.valid() ? BranchId(domain.parent.index()) : BranchId(),
@@ -93,7 +95,7 @@ void append_chain(Plant& plant, const Bake& bake, DomainId id, double spacing) {
     particle.half_length = (head - tail).norm() / 2;
     particle.half_width = middle.half_width;
     particle.half_thickness = middle.half_thickness;
-    particle.mass = i + 1 == n ? mass_left : domain.mass * line.volume_share(s0, s1) / volume;
+    particle.mass = i + 1 == n ? mass_left : domain.mass * line.mass_share(s0, s1) / shares;
     mass_left -= particle.mass;
     particle.inertia =
         rod_inertia(particle.mass, particle.half_length, middle.half_width, middle.half_thickness);
@@ -116,8 +118,8 @@ void append_chain(Plant& plant, const Bake& bake, DomainId id, double spacing) {
     const double stands_for =
         i > 0 ? particle.half_length + plant.particles.back().half_length : particle.half_length;
     set_section(joint,
-                rod_section(domain.youngs_modulus, poisson, section.half_width, section.half_thickness,
-                            domain.stiffness_ratio),
+                rod_section(domain.youngs_modulus * line.material_scaling(s0), poisson, section.half_width,
+                            section.half_thickness, domain.stiffness_ratio),
                 stands_for);
 
     branch.particles.push_back(ParticleId(plant.particles.size()));

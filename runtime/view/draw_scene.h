@@ -40,10 +40,18 @@ struct DrawMesh {
   std::string name;     ///< of its node in an exported file; may be empty
 };
 
+/// A thin line of the same width on any picture: moving air, say. Casts no shadow and is not exported.
+struct DrawStreak {
+  Vec3 from, to;       ///< m; fades towards `from`
+  Vec3 color;          ///< linear RGB
+  double opacity = 1;  ///< at `to`
+};
+
 struct DrawScene {
   std::vector<DrawTube> tubes;
   std::vector<DrawLeaf> leaves;
   std::vector<DrawMesh> meshes;
+  std::vector<DrawStreak> streaks;
   Vec3 to_sun = {0.4, 0.8, 0.45};  ///< unit after normalisation, from the ground towards the sun
   bool ground = true;              ///< draw the ground, the plane y = 0
 };
@@ -59,7 +67,7 @@ struct BoundingBox {
   }
 };
 
-/// Box around tubes, leaves and meshes, m; empty() for an empty scene.
+/// Box around tubes, leaves and meshes (not streaks), m; empty() for an empty scene.
 BoundingBox bounding_box(const DrawScene& scene);
 
 }  // namespace liana

@@ -37,6 +37,7 @@ void draw_stats(const OverlayText& text, float margin) {
     row("physics", "%.2f ms", text.stats.physics_ms);
     row("growth", "%.2f ms", text.stats.growth_ms);
     row("collision", "%.2f ms", text.stats.collision_ms);
+    if (text.stats.wind_ms > 0) row("wind", "%.2f ms", text.stats.wind_ms);
     if (text.stats.redone_steps > 0) row("redone", "%zu steps", text.stats.redone_steps);
     ImGui::EndTable();
   }

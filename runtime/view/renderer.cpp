@@ -58,7 +58,7 @@ void Renderer::draw(const Camera& camera, const FrameOptions& options) {
   const Eigen::Matrix4f view_projection =
       camera.projection(double(options.width) / options.height) * camera.view();
   const double texel = sun.extent / options.shadow_size;
-  for (ShaderProgram* program : {&tube_, &leaf_, &mesh_, &ground_, &sky_}) {
+  for (ShaderProgram* program : {&tube_, &leaf_, &mesh_, &ground_, &sky_, &streak_}) {
     program->use();
     program->set("view_projection", view_projection);
     program->set("light_matrix", sun.to_texture);
@@ -72,6 +72,7 @@ void Renderer::draw(const Camera& camera, const FrameOptions& options) {
   }
   draw_plants(tube_, leaf_);
   draw_surroundings(camera, options);
+  draw_streaks(options);
   target.resolve();
   last_ = &target;
   if (options.ambient_occlusion) draw_occlusion(camera, options);
@@ -122,6 +123,17 @@ void Renderer::draw_surroundings(const Camera& camera, const FrameOptions& optio
   sky_.use();
   set_rays(sky_, camera, options.width, options.height);
   glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void Renderer::draw_streaks(const FrameOptions& options) {
+  streak_.use();
+  streak_.set("half_pixel", Eigen::Vector2f(1.0f / float(options.width), 1.0f / float(options.height)));
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+  glDepthMask(GL_FALSE);
+  buffers_.draw_streaks();
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
 }
 
 void Renderer::draw_occlusion(const Camera& camera, const FrameOptions& options) {

@@ -40,12 +40,14 @@ class Renderer {
   void draw_shadows(const SunView& sun);
   void draw_plants(ShaderProgram& tubes, ShaderProgram& leaves);
   void draw_surroundings(const Camera& camera, const FrameOptions& options);
+  void draw_streaks(const FrameOptions& options);
   void draw_occlusion(const Camera& camera, const FrameOptions& options);
 
   SceneBuffers buffers_;
   ShaderProgram tube_{"tube.vert", "tube.frag"}, leaf_{"leaf.vert", "leaf.frag"},
       mesh_{"mesh.vert", "mesh.frag"};
   ShaderProgram ground_{"ground.vert", "ground.frag"}, sky_{"sky.vert", "sky.frag"};
+  ShaderProgram streak_{"streak.vert", "streak.frag"};
   ShaderProgram occlusion_{"sky.vert", "occlusion.frag"};
   ShaderProgram tube_shadow_{"tube.vert", "shadow.frag"}, leaf_shadow_{"leaf.vert", "shadow.frag"};
   ShaderProgram mesh_shadow_{"mesh.vert", "shadow.frag"};

@@ -2,6 +2,8 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
+
 #include "runtime/view/leaf_mesh.h"
 #include "runtime/view/pack.h"
 #include "runtime/view/smooth_normals.h"
@@ -13,6 +15,11 @@ struct LeafInstance {
   std::array<float, 3> base;
   std::array<float, 4> orientation;  // x y z w
   std::array<float, 3> size;         // length, width, curl
+  std::array<uint8_t, 4> color;
+};
+
+struct StreakInstance {
+  std::array<float, 3> from, to;
   std::array<uint8_t, 4> color;
 };
 
@@ -68,6 +75,12 @@ SceneBuffers::SceneBuffers() {
   glBindBuffer(GL_ARRAY_BUFFER, mesh_vertices_.id());
   attribute(0, 3, sizeof(MeshVertex), offsetof(MeshVertex, position));
   attribute(1, 3, sizeof(MeshVertex), offsetof(MeshVertex, normal));
+
+  glBindVertexArray(streak_array_.id());
+  glBindBuffer(GL_ARRAY_BUFFER, streak_instances_.id());
+  attribute(0, 3, sizeof(StreakInstance), offsetof(StreakInstance, from), true);
+  attribute(1, 3, sizeof(StreakInstance), offsetof(StreakInstance, to), true);
+  attribute(2, 4, sizeof(StreakInstance), offsetof(StreakInstance, color), true, true);
   glBindVertexArray(0);
 }
 
@@ -97,6 +110,14 @@ void SceneBuffers::upload(const DrawScene& scene, int tube_sides) {
     leaves_[outline].instance_count = int(instances[outline].size());
   }
 
+  std::vector<StreakInstance> streaks;
+  for (const DrawStreak& streak : scene.streaks) {
+    streaks.push_back({floats(streak.from), floats(streak.to), packed_color(streak.color)});
+    streaks.back().color[3] = static_cast<uint8_t>(255 * std::clamp(streak.opacity, 0.0, 1.0));
+  }
+  fill(GL_ARRAY_BUFFER, streak_instances_, streaks);
+  streak_count_ = int(streaks.size());
+
   std::vector<MeshVertex> vertices;
   mesh_ranges_.clear();
   for (const DrawMesh& mesh : scene.meshes) {
@@ -120,6 +141,12 @@ void SceneBuffers::draw_leaves(LeafOutline outline) const {
   if (leaves.instance_count == 0) return;
   glBindVertexArray(leaves.array.id());
   glDrawElementsInstanced(GL_TRIANGLES, leaves.index_count, GL_UNSIGNED_INT, nullptr, leaves.instance_count);
+}
+
+void SceneBuffers::draw_streaks() const {
+  if (streak_count_ == 0) return;
+  glBindVertexArray(streak_array_.id());
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, streak_count_);
 }
 
 void SceneBuffers::draw_mesh(const MeshRange& range) const {

@@ -21,6 +21,7 @@ class SceneBuffers {
   void draw_tubes() const;
   void draw_leaves(LeafOutline outline) const;
   void draw_mesh(const MeshRange& range) const;
+  void draw_streaks() const;
   const std::vector<MeshRange>& meshes() const { return mesh_ranges_; }
   const BoundingBox& box() const { return box_; }  ///< of all that casts a shadow
   const Vec3& to_sun() const { return to_sun_; }   ///< unit
@@ -37,6 +38,8 @@ class SceneBuffers {
   int tube_index_count_ = 0;
   Leaves leaves_[kLeafOutlineCount];
   GlObject mesh_array_{GlKind::VertexArray}, mesh_vertices_{GlKind::Buffer};
+  GlObject streak_array_{GlKind::VertexArray}, streak_instances_{GlKind::Buffer};
+  int streak_count_ = 0;
   std::vector<MeshRange> mesh_ranges_;
   BoundingBox box_;
   Vec3 to_sun_ = Vec3::UnitY();

@@ -9,7 +9,8 @@ namespace liana {
 struct SimulationStats {
   double time = 0;  ///< s, simulated
   size_t steps = 0, particles = 0, anchors = 0;
-  double growth_ms = 0, collision_ms = 0, physics_ms = 0;  ///< of the last step
+  double growth_ms = 0, collision_ms = 0, physics_ms = 0,
+         wind_ms = 0;                                        ///< of the last step
   size_t redone_steps = 0;                                 ///< so far; 0 in normal motion
 };
 

@@ -5,6 +5,7 @@
 
 #include "materials/bake/bake_check.h"
 #include "materials/bake/bake_file.h"
+#include "materials/law/material_model.h"
 #include "materials/law/power_law.h"
 #include "materials/pipeline/bake_plant.h"
 #include "mesher/surface/solid_domain.h"
@@ -228,6 +229,51 @@ TEST(BakePlant, NotesGroupsThatBorrowALaw) {
   const BakeResult result = bake(make_small_plant());  // its twigs are of level2, which the law lacks
   ASSERT_EQ(result.notes.size(), 1u);
   EXPECT_NE(result.notes[0].find("level2"), std::string::npos);
+}
+
+// The models differ in ν alone; what Eq. 10 and 15 make of it is the same.
+TEST(BakePlant, BakesByOtherModelsToo) {
+  const SegmentedPlant plant = make_small_plant();
+  const Bake power = bake(plant).bake;
+  for (const MaterialModel model : {MaterialModel::Constant, MaterialModel::Depth, MaterialModel::Median}) {
+    SCOPED_TRACE(model_name(model));
+    SpeciesLaw law = test_law();
+    law.model.model = model;
+    Progress silent;
+    const BakeResult result = bake_plant(plant, law, {}, silent);
+    ASSERT_EQ(result.bake.domains.size(), power.domains.size());
+    EXPECT_EQ(decode_bake(encode_bake(result.bake), "bake").law.model.model, model);
+    std::vector<ModelledDomain> domains;
+    for (const BakedDomain& d : result.bake.domains)
+      domains.push_back({d.group, d.kind, d.level, d.length, d.default_frequency});
+    const std::vector<double> expected = model_frequencies(law, domains).frequencies;
+    for (size_t i = 0; i < domains.size(); ++i) {
+      const BakedDomain& domain = result.bake.domains[i];
+      EXPECT_EQ(domain.default_frequency, power.domains[i].default_frequency);
+      EXPECT_EQ(domain.material.frequency, expected[i]);
+      EXPECT_EQ(domain.mass, power.domains[i].mass);
+      EXPECT_DOUBLE_EQ(domain.stiffness_scaling,
+                       domain.material.mass_scaling * std::pow(expected[i] / domain.default_frequency, 2));
+    }
+  }
+}
+
+TEST(BakePlant, GroupsOfTheSpeciesClaimDomainsByName) {
+  SegmentedPlant plant = make_small_plant();
+  const size_t twig = index_of(plant.domains, DomainKind::Branch, 2);
+  plant.domains[twig].name = "P1";
+  SpeciesLaw law = test_law();
+  law.groups["tracked"] = law.groups["level1"];
+  law.groups["tracked"].reference_frequency = 3.18;
+  law.groups["tracked"].match.name = "P[0-9]";
+  Progress silent;
+  const Bake bake = bake_plant(plant, law, {}, silent).bake;
+  EXPECT_EQ(bake.domains[twig].group, "tracked");
+  EXPECT_EQ(bake.domains[twig].material.frequency,
+            frequency_of_length(law.groups["tracked"], bake.domains[twig].length));
+  EXPECT_EQ(std::count_if(bake.domains.begin(), bake.domains.end(),
+                          [](const BakedDomain& domain) { return domain.group == "tracked"; }),
+            1);
 }
 
 }  // namespace

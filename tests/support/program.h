@@ -13,6 +13,13 @@ struct ProgramResult {
   std::string err;  ///< stderr
 };
 
+/// Runs a program by its path, or its name on $PATH, in `folder`. Never throws for a program that fails.
+ProgramResult run_program(const std::string& program, const std::vector<std::string>& arguments,
+                          const std::filesystem::path& folder = ".");
+
+/// Where a program of this name is on $PATH; empty when it is nowhere.
+std::filesystem::path find_program(const std::string& name);
+
 /// Runs the built program in `folder`. Never throws for a program that fails: look at the exit code.
 ProgramResult run_liana(const std::vector<std::string>& arguments, const std::filesystem::path& folder = ".");
 

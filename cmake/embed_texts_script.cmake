@@ -1,0 +1,12 @@
+# Run at build time by liana_embed_texts: FILES -> OUTPUT (C++).
+string(REPLACE " " ";" parts "${LIST}")
+list(GET parts 0 type)
+list(GET parts 1 name)
+set(text "#include \"${HEADER}\"\n\nnamespace liana {\n\nconst std::vector<${type}> ${name} = {\n")
+foreach(path IN LISTS FILES)
+  get_filename_component(file ${path} NAME)
+  file(READ ${path} body)
+  string(APPEND text "{\"${file}\", R\"TEXT(${body})TEXT\"},\n")
+endforeach()
+string(APPEND text "};\n\n}  // namespace liana\n")
+file(WRITE ${OUTPUT} "${text}")

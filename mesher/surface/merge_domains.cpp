@@ -1,0 +1,121 @@
+#include "mesher/surface/merge_domains.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "mesher/base/parallel.h"
+#include "mesher/surface/solid_domain.h"
+#include "mesher/surface/solid_union.h"
+
+namespace liana {
+namespace {
+
+class Merging {
+ public:
+  Merging(const SegmentedPlant& plant, int level) : plant_(plant), part_of_(plant.domains.size()) {
+    for (size_t i = 0; i < plant.domains.size(); ++i) {
+      const Domain& domain = plant.domains[i];
+      const bool merges = domain.kind == DomainKind::Branch && domain.level > level &&
+                          domain.parent.valid() &&
+                          plant.domains[domain.parent.index()].kind == DomainKind::Branch;
+      part_of_[i] = merges ? part_of_[domain.parent.index()] : DomainId(i);
+    }
+  }
+
+  /// The domains that are to become one with `keeper`, parents first, itself left out.
+  std::vector<std::vector<DomainId>> parts() const {
+    std::vector<std::vector<DomainId>> parts(part_of_.size());
+    for (size_t i = 0; i < part_of_.size(); ++i)
+      if (part_of_[i] != DomainId(i)) parts[part_of_[i].index()].push_back(DomainId(i));
+    return parts;
+  }
+
+  /// The union of a keeper and its parts; those that do not join become keepers, with what grows on them.
+  Mesh unite(DomainId keeper, const std::vector<DomainId>& parts) {
+    const SolidDomain solid = make_solid(plant_, keeper);
+    SolidUnion all(solid.surface);
+    size_t joined = 0;
+    for (const DomainId part : parts) {
+      const DomainId on = part_of_[plant_.domains[part.index()].parent.index()];
+      if (on == keeper && joins(all, part))
+        ++joined;
+      else
+        part_of_[part.index()] = on == keeper ? part : on;
+    }
+    // A hundredth of a branch's thickness, √(V / ℓ), is far below what the tetrahedra resolve.
+    return joined ? all.mesh(0.01 * std::sqrt(solid.volume / solid.length))
+                  : plant_.domains[keeper.index()].surface;
+  }
+
+  void leave_apart(const std::vector<DomainId>& parts) {
+    for (const DomainId part : parts) part_of_[part.index()] = part;
+  }
+
+  const std::vector<DomainId>& part_of() const { return part_of_; }
+
+ private:
+  bool joins(SolidUnion& all, DomainId part) const {
+    try {
+      return all.add(make_solid(plant_, part).surface);
+    } catch (const Error& error) {
+      if (error.kind != Error::Kind::Input) throw;
+      return false;  // it cannot be made solid: on its own the bake says why
+    }
+  }
+
+  const SegmentedPlant& plant_;
+  std::vector<DomainId> part_of_;  ///< of the plant before
+};
+
+}  // namespace
+
+MergedPlant merge_below(const SegmentedPlant& plant, int level, unsigned threads, Progress& progress) {
+  Merging merging(plant, level);
+  const std::vector<DomainId> wanted = merging.part_of();
+  const std::vector<std::vector<DomainId>> parts = merging.parts();
+  std::vector<Mesh> surfaces(plant.domains.size());
+  progress.begin("merge", plant.domains.size());
+  parallel_for(plant.domains.size(), threads, [&](size_t i, unsigned) {
+    progress.throw_if_cancelled();
+    progress.advance();
+    surfaces[i] = plant.domains[i].surface;
+    if (parts[i].empty()) return;
+    try {
+      surfaces[i] = merging.unite(DomainId(i), parts[i]);
+    } catch (const Error& error) {
+      if (error.kind != Error::Kind::Input) throw;
+      merging.leave_apart(parts[i]);  // it cannot be made solid: the bake says why
+    }
+  });
+
+  MergedPlant result{{plant.name, {}, {}, plant.source_hash}, std::vector<DomainId>(plant.domains.size())};
+  std::vector<std::string>& notes = result.plant.notes;
+  size_t merged = 0;
+  for (size_t i = 0; i < plant.domains.size(); ++i) {
+    const DomainId keeper = merging.part_of()[i];
+    if (keeper != DomainId(i)) {
+      result.became[i] = result.became[keeper.index()];
+      ++merged;
+      continue;
+    }
+    result.became[i] = DomainId(result.plant.domains.size());
+    Domain domain = plant.domains[i];
+    domain.surface = std::move(surfaces[i]);
+    if (domain.parent.valid()) {
+      domain.parent = result.became[domain.parent.index()];
+      domain.level = result.plant.domains[domain.parent.index()].level + 1;
+    }
+    result.plant.domains.push_back(std::move(domain));
+    if (wanted[i] != keeper)
+      notes.push_back(fmt::format("'{}' shares no volume with what it grows on: it stays a domain of its own",
+                                  plant.domains[i].name));
+  }
+  notes.insert(notes.begin(),
+               fmt::format("merged below level {}: {} branches became part of another, {} domains are left",
+                           level, merged, result.plant.domains.size()));
+  notes.insert(notes.begin(), plant.notes.begin(), plant.notes.end());
+  return result;
+}
+
+}  // namespace liana
