@@ -19,7 +19,7 @@ namespace liana {
 namespace {
 
 constexpr double kFar = 1e6;                   // pixels
-constexpr size_t kMostPositions = 10'000'000;  // frames times points
+constexpr size_t kMostPositions = 2'000'000;  // frames times points
 constexpr int64_t kLastFrame = int64_t{1} << 40;
 const Vec2 kUnseen = Vec2::Constant(std::numeric_limits<double>::quiet_NaN());
 

@@ -33,7 +33,7 @@ struct PointTracks {
 /// CSV with the columns frame, point, x, y (a header may order them otherwise and add more; lines that start
 /// with # are skipped). Frames that are left out, and an empty or "nan" x or y, mean "not seen". Throws
 /// Error{Input} "file:line: ..." for anything else that is no such table: text where a number must be, frames
-/// of a point that do not increase, coordinates beyond 1e6 pixels, more than 1e7 positions.
+/// of a point that do not increase, coordinates beyond 1e6 pixels, more than 2e6 positions.
 PointTracks parse_point_tracks(std::string_view text, const std::string& file, double frames_per_second);
 PointTracks read_point_tracks(const std::filesystem::path& path, double frames_per_second);
 

@@ -113,9 +113,11 @@ TreeModes tree_modes(std::vector<BranchMotion> branches, const WindOptions& opti
   for (BranchMotion& branch : branches) {
     branch.roles.assign(branch.motion.modes.size(), ModeRole::Other);
     mark(branch, tree.wind, ModeRole::Wind);
-    if (options.rule == WindRule::Below)
-      for (size_t i = 0; i < branch.roles.size(); ++i)
-        if (branch.motion.modes[i].frequency <= options.below) branch.roles[i] = ModeRole::Wind;
+    // Gusts are no single frequency: what is slower than theirs is theirs, too.
+    double slowest = options.rule == WindRule::Below ? options.below : 0;
+    if (tree.wind) slowest = std::max(slowest, tree.wind->frequency);
+    for (size_t i = 0; i < branch.roles.size(); ++i)
+      if (branch.motion.modes[i].frequency <= slowest) branch.roles[i] = ModeRole::Wind;
   }
 
   std::vector<MeasuredMode> of_trunk;

@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 
 #include "materials/bake/bake_file.h"
@@ -135,11 +136,23 @@ PointTracks tracks_of(const InferArguments& arguments, InferOptions& options,
   return read_point_tracks(arguments.input, arguments.fps);
 }
 
+bool assigns_a_branch(const InferArguments& arguments, const InferOptions& options) {
+  const std::string still = "=" + kStillTarget;
+  return std::any_of(
+             arguments.points.begin(), arguments.points.end(),
+             [&](const std::string& p) { return p.find('=') != std::string::npos && !p.ends_with(still); }) ||
+         std::any_of(options.assignments.begin(), options.assignments.end(),
+                     [](const PointAssignment& a) { return a.target != kStillTarget; });
+}
+
 int infer_verb(const InferArguments& arguments) {
   for (const fs::path& output :
        {arguments.preset, arguments.json, arguments.spectrum, arguments.tracks, arguments.overlay})
     if (!output.empty()) require_writable_folder(output);
   InferOptions options = infer_options(arguments);
+  if (!arguments.preset.empty() && !assigns_a_branch(arguments, options))
+    usage("no point is assigned to a branch: there is no law to write",
+          "add --point X,Y=BRANCH or --assign NAME=BRANCH");
   const SpeciesFile base = read_species_file(find_species(arguments.species));
   std::optional<Bake> plant;
   if (!arguments.plant.empty()) plant = read_bake(arguments.plant);
@@ -153,9 +166,6 @@ int infer_verb(const InferArguments& arguments) {
   if (!arguments.spectrum.empty()) write_file(arguments.spectrum, spectrum_csv(result));
   fmt::print("{}", infer_table(result));
   if (!arguments.preset.empty()) {
-    if (result.groups.empty())
-      usage("no point is assigned to a branch: there is no law to write",
-            "add --point X,Y=BRANCH or --assign NAME=BRANCH");
     const SpeciesFile species = inferred_species(
         base, result, arguments.name.empty() ? arguments.preset.stem().string() : arguments.name);
     write_file(arguments.preset,

@@ -124,6 +124,20 @@ TEST(InferProgram, RefusesTracksThatMakeNoSense) {
   EXPECT_TRUE(says(refusal(folder, {"t.csv", "--fps", "30", "--wind", "west"}, 2), "--wind west"));
   EXPECT_TRUE(says(refusal(folder, {"t.csv", "--fps", "30", "--between", "3", "1"}, 2), "--between"));
   EXPECT_TRUE(says(refusal(folder, {"t.csv", "--fps", "30", "-o", "no/where.toml"}), "no such folder"));
+  EXPECT_TRUE(says(refusal(folder, {"t.csv", "--fps", "30", "-o", "mine.toml"}, 2), "no point is assigned"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "mine.toml"));
+}
+
+TEST(PluckedScene, UnknownBranchOrPlantIsRefused) {
+  const ScratchFolder folder;
+  write_bake(test::filmed_plant(), folder / "plant.bake");
+  const auto said = [&](const std::string& pluck) {
+    write_file(folder / "scene.toml", test::kFilmedScene + "[[pluck]]\n" + pluck);
+    return run_liana({"simulate", "scene.toml", "--seconds", "0"}, folder.path()).err;
+  };
+  EXPECT_TRUE(says(said("domain = \"lefft\"\nvelocity = [1, 0, 0]\n"), "did you mean 'left'"));
+  EXPECT_TRUE(says(said("plant = 1\ndomain = \"left\"\nvelocity = [1, 0, 0]\n"), "plant"));
+  EXPECT_TRUE(says(said("domain = \"left\"\nvelocity = [200, 0, 0]\n"), "100 m/s"));
 }
 
 }  // namespace

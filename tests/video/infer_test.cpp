@@ -1,6 +1,7 @@
 // From tracks of several points to a species: wind, trunk, branches, law, file.
 #include "materials/video/infer.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -35,11 +36,11 @@ PointTracks plucked(uint64_t seed, double noise = 0.2) {
   for (size_t i = 0; i < kBranches.size(); ++i) {
     const Branch& b = kBranches[i];
     tracks.points.push_back(
-        {"P" + std::to_string(i), test::decaying_path({.seconds = 12,
-                                                       .angle = 0.3 + double(i),
-                                                       .noise = noise,
-                                                       .swings = {kTrunk, {b.frequency, b.damping, 9}}},
-                                                      random)});
+        {fmt::format("P{}", i), test::decaying_path({.seconds = 12,
+                                                     .angle = 0.3 + double(i),
+                                                     .noise = noise,
+                                                     .swings = {kTrunk, {b.frequency, b.damping, 9}}},
+                                                    random)});
   }
   return tracks;
 }
@@ -132,7 +133,7 @@ TEST(Infer, LowestSharedFrequencyIsTheWindsWhenAHigherOneIsSharedToo) {
   Random random(4, "wind");
   for (size_t i = 0; i < 3; ++i)
     tracks.points.push_back(
-        {"P" + std::to_string(i),
+        {fmt::format("P{}", i),
          test::decaying_path(
              {.seconds = 30, .swings = {{0.15, 0, 6}, {0.62, 0.004, 4}, {1.1 + 0.25 * double(i), 0.004, 5}}},
              random)});

@@ -15,7 +15,7 @@
 namespace liana {
 namespace {
 
-constexpr int kWidth = 320, kHeight = 240, kFrames = 200;
+constexpr int kWidth = 320, kHeight = 240, kFrames = 150;
 constexpr double kFps = 25, kFrequency = 1.4, kDamping = 0.05;
 
 /// Smooth noise: waves of 10 to 30 pixels in random directions.
@@ -31,7 +31,7 @@ class Texture {
   double at(const Vec2& p) const {  // about -1 to 1
     double sum = 0;
     for (const Wave& wave : waves_) sum += std::sin(wave.number.dot(p) + wave.phase);
-    return sum / 4;
+    return sum / 3;
   }
 
  private:
@@ -39,7 +39,7 @@ class Texture {
     Vec2 number;
     double phase;
   };
-  Wave waves_[12];
+  Wave waves_[6];
 };
 
 Vec2 swing(int frame) {
