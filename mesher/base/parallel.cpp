@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
+#include <cstdint>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -9,7 +11,76 @@
 
 namespace liana {
 
-unsigned default_thread_count() { return std::max(1u, std::thread::hardware_concurrency()); }
+namespace {
+
+// Threads that wait for the next loop: starting one costs as much as stepping a small plant, and what it
+// keeps in thread_local memory would be made anew.
+class Pool {
+ public:
+  ~Pool() {
+    {
+      std::lock_guard lock(mutex_);
+      ending_ = true;
+    }
+    start_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+  // Runs work(0) here and work(1 … threads − 1) elsewhere, and waits for all. One caller at a time.
+  void run(unsigned threads, const std::function<void(unsigned)>& work) {
+    {
+      std::lock_guard lock(mutex_);
+      while (threads_.size() + 1 < threads) {
+        const auto worker = static_cast<unsigned>(threads_.size() + 1);
+        threads_.emplace_back([this, worker, seen = round_] { serve(worker, seen); });
+      }
+      work_ = &work;
+      wanted_ = threads;
+      running_ = threads - 1;
+      ++round_;
+    }
+    start_.notify_all();
+    work(0);
+    std::unique_lock lock(mutex_);
+    done_.wait(lock, [&] { return running_ == 0; });
+  }
+
+ private:
+  void serve(unsigned worker, uint64_t seen) {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      start_.wait(lock, [&] { return ending_ || round_ != seen; });
+      if (ending_) return;
+      seen = round_;
+      if (worker >= wanted_) continue;
+      const std::function<void(unsigned)>& work = *work_;
+      lock.unlock();
+      work(worker);
+      lock.lock();
+      if (--running_ == 0) done_.notify_one();
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable start_, done_;
+  std::vector<std::thread> threads_;
+  const std::function<void(unsigned)>* work_ = nullptr;
+  unsigned wanted_ = 0, running_ = 0;
+  uint64_t round_ = 0;
+  bool ending_ = false;
+};
+
+std::mutex pool_in_use;
+Pool& pool() {
+  static Pool pool;
+  return pool;
+}
+
+}  // namespace
+
+unsigned default_thread_count() {
+  return std::max(1u, std::thread::hardware_concurrency());
+}
 
 void parallel_for(size_t count, unsigned threads, const std::function<void(size_t, unsigned)>& body,
                   size_t grain) {
@@ -36,10 +107,17 @@ void parallel_for(size_t count, unsigned threads, const std::function<void(size_
     }
   };
 
-  std::vector<std::thread> others;
-  for (unsigned worker = 1; worker < threads; ++worker) others.emplace_back(work, worker);
-  work(0);
-  for (std::thread& thread : others) thread.join();
+  // The threads that wait are used unless another loop, perhaps the one that called this, has them.
+  if (threads < 2) {
+    work(0);
+  } else if (std::unique_lock free(pool_in_use, std::try_to_lock); free) {
+    pool().run(threads, work);
+  } else {
+    std::vector<std::thread> others;
+    for (unsigned worker = 1; worker < threads; ++worker) others.emplace_back(work, worker);
+    work(0);
+    for (std::thread& thread : others) thread.join();
+  }
   if (failure) std::rethrow_exception(failure);
 }
 

@@ -11,7 +11,7 @@ namespace {
 using Complex = std::complex<double>;
 
 UnitOscillator invert(double frequency, double damping_factor, double h, double rho_infinity) {
-  const auto [alpha_m, alpha_f, gamma, beta] = GeneralizedAlpha(rho_infinity);
+  const auto [alpha_m, alpha_f, gamma, beta, before] = GeneralizedAlpha(rho_infinity);
   const double omega = 2 * kPi * frequency, xi = damping_factor;
   const Complex z = std::exp(Complex(-xi * omega, omega * std::sqrt(1 - xi * xi)) * h);
   const Complex V = h * ((1 - gamma) + gamma * z) / (z - 1.0);
@@ -38,7 +38,7 @@ UnitOscillator discrete_oscillator(double frequency, double damping_factor, doub
 }
 
 Mat3 amplification_matrix(double k, double c, double h, double rho_infinity) {
-  const auto [alpha_m, alpha_f, gamma, beta] = GeneralizedAlpha(rho_infinity);
+  const auto [alpha_m, alpha_f, gamma, beta, before] = GeneralizedAlpha(rho_infinity);
   const double K = k * h * h, C = c * h;
   // x₁ = x + v + (½−β) a + β a₁,  v₁ = v + (1−γ) a + γ a₁  (in units of h), and the balance solved for a₁.
   const Eigen::RowVector3d x(1, 1, 0.5 - beta), v(0, 1, 1 - gamma);

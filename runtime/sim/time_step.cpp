@@ -5,6 +5,7 @@
 #include "runtime/sim/free_flight.h"
 #include "runtime/sim/generalized_alpha.h"
 #include "runtime/sim/joints.h"
+#include "runtime/sim/reseat.h"
 
 namespace liana {
 namespace {
@@ -43,16 +44,17 @@ const double* numbers(const void* structures) {
 struct Workspace {
   std::vector<double> pose, block, record;  // see step_view.h
 
-  void prepare(const EliminationOrder& order) {
+  void prepare(const EliminationOrder& order, const Vec3& world_position) {
     const auto grow = [](std::vector<double>& numbers, size_t size) {
       if (numbers.size() < size) numbers.resize(size);
     };
     grow(pose, size_t{lanes::kPoseStride} * order.pose_slots());
     grow(block, size_t{lanes::kBlockStride} * order.block_slots());
     grow(record, size_t{4 * lanes::kRecordLanes} * order.packs().size());
-    // The world: identity, at rest. What it is handed is not looked at.
+    // The world: unturned, at rest. What it is handed is not looked at.
     double* world = &pose[size_t{lanes::kPoseStride} * order.world_slot()];
     std::fill_n(world, lanes::kPoseStride, 0.0);
+    Eigen::Map<Vec3>{world} = world_position;
     world[7] = 1;
     std::fill_n(block_of(order.world_slot()), lanes::kBlockStride, 0.0);
     for (const EliminationOrder::Handover& h : order.handovers())
@@ -62,6 +64,20 @@ struct Workspace {
   double* block_of(uint32_t slot) { return &block[size_t{lanes::kBlockStride} * slot]; }
 };
 thread_local Workspace workspace;
+
+// How far the plant's first particle is from where the world holds it.
+Vec3 off_support(const Plant& plant) {
+  if (plant.particles.empty() || plant.particles[0].joint.shear_stiffness.isZero(0)) return Vec3::Zero();
+  const Motion& m = plant.motion[0];
+  const Joint& joint = plant.particles[0].joint;
+  return m.position + m.orientation * joint.on_self - joint.on_parent;
+}
+
+// What a step is redone with: generalized-α at ρ∞ = 0, at last backward Euler.
+GeneralizedAlpha method_of(const TimeScheme& scheme, int finer, int finest) {
+  if (finer == 1) return GeneralizedAlpha(scheme.rho_infinity);
+  return 4 * finer > finest ? GeneralizedAlpha::backward_euler() : GeneralizedAlpha(0);
+}
 
 // A spring's force and stiffness into the block of its particle.
 void add_spring(const WorldSpring& spring, double position_rate, double velocity_rate, const double* pose,
@@ -93,6 +109,7 @@ struct PlantStepper::Substep {
   std::span<const Wrench> external;
   std::span<const WorldSpring> transient;
   Vec3 gravity;
+  Vec3 world = Vec3::Zero();                                          // how far the world is off its place
   double position_rate = (1 - method.alpha_f) * method.beta * h * h;  // k₁, s²
   double velocity_rate = (1 - method.alpha_f) * method.gamma * h;     // k₂, s
 };
@@ -105,18 +122,21 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
   next_.resize(count);
   sort_springs(plant, transient);
   StepReport report;
+  // A support that jumped is carried to its new place within the step, when the step has to be redone.
+  const Vec3 teleported = off_support(plant);
   report.calibrated = options.dt == plant.scheme.dt;
 
   for (int finer = 1;; finer *= 2) {
     const bool last = 2 * finer > options.most_redo_substeps;
     const int parts = plant.scheme.substeps * finer;
-    const Substep part{options.dt / parts, GeneralizedAlpha(finer == 1 ? plant.scheme.rho_infinity : 0),
-                       external, transient, options.gravity};
+    Substep part{options.dt / parts, method_of(plant.scheme, finer, options.most_redo_substeps), external,
+                 transient, options.gravity};
     report.gap = 0;
     report.finite = true;
     for (int i = 0; i < parts && report.finite && (last || report.gap <= options.gap_limit); ++i) {
       if (i > 0) now_.swap(next_);
       const std::vector<Motion>& from = i == 0 ? plant.motion : now_;
+      if (finer > 1) part.world = (1 - (i + 1.0) / parts) * teleported;
       Outcome outcome = substep(plant, part, from, next_, report.gap);
       if (outcome == Outcome::TreeChanged) {
         order_.update(plant.particles, true);
@@ -133,6 +153,8 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
 
   if (report.finite) {
     plant.motion.swap(next_);
+    if (!report.gap_held && options.most_redo_substeps > 1)
+      report.reseated = reseat(plant, options.gap_limit);
     if (plant.anchors.empty() && transient.empty() && external.empty()) keep_angular_momentum(next_, plant);
   } else {
     for (Motion& m : plant.motion) m = {.position = m.position, .orientation = m.orientation};
@@ -143,8 +165,7 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
 PlantStepper::Outcome PlantStepper::substep(const Plant& plant, const Substep& step,
                                             const std::vector<Motion>& from, std::vector<Motion>& to,
                                             double& gap) noexcept {
-  workspace.prepare(order_);
-  const auto& [alpha_m, alpha_f, gamma, beta] = step.method;
+  workspace.prepare(order_, step.world);
   const lanes::StepView view{
       .particle = numbers(plant.particles.data()),
       .from = numbers(from.data()),
@@ -155,10 +176,11 @@ PlantStepper::Outcome PlantStepper::substep(const Plant& plant, const Substep& s
       .packs = order_.packs().data(),
       .gravity = {step.gravity.x(), step.gravity.y(), step.gravity.z()},
       .h = step.h,
-      .alpha_m = alpha_m,
-      .alpha_f = alpha_f,
-      .gamma = gamma,
-      .beta = beta,
+      .alpha_m = step.method.alpha_m,
+      .alpha_f = step.method.alpha_f,
+      .before = step.method.before,
+      .after = step.method.beta,
+      .gamma = step.method.gamma,
       .position_rate = step.position_rate,
       .velocity_rate = step.velocity_rate,
   };

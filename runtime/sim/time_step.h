@@ -23,14 +23,15 @@ struct StepOptions {
   double dt = 0.025;             ///< s; frequencies are as baked only when it equals plant.scheme.dt
   Vec3 gravity = {0, -9.81, 0};  ///< m/s²
   double gap_limit = 0.02;       ///< of the particle's length; above it the step is redone
-  int most_redo_substeps = 32;   ///< per substep of the scheme; 1 switches redoing off
+  int most_redo_substeps = 32;   ///< per substep of the scheme; 1 switches the net off
 };
 
 struct StepReport {
   int solves = 0;          ///< linear solves spent, redone ones included
   int redone = 0;          ///< 0 in normal motion: how often this step was started again
   double gap = 0;          ///< largest joint gap of the accepted step, over the particle's length
-  bool gap_held = true;    ///< false when even the finest redo ended above the limit (accepted all the same)
+  bool gap_held = true;    ///< false when even the finest redo ended above the limit
+  int reseated = 0;        ///< joints that were then closed by hand (see reseat.h)
   bool finite = true;      ///< false when no redo stayed finite: positions kept, velocities cleared
   bool calibrated = true;  ///< false when dt is not the one that the plant was calibrated for
 };

@@ -40,7 +40,7 @@ bool ReferenceStepper::step(Plant& plant, std::span<const Wrench> external,
 
 // Poses at the moment of balance if a₁ were 0, and every particle's own block and load.
 void ReferenceStepper::predict(const Plant& plant, const Substep& step) {
-  const auto& [alpha_m, alpha_f, gamma, beta] = step.method;
+  const auto& [alpha_m, alpha_f, gamma, beta, before] = step.method;
   const double t = (1 - alpha_f) * step.h, t2 = t * step.h * (0.5 - beta), tv = t * (1 - gamma);
   for (size_t i = 0; i < plant.particles.size(); ++i) {
     const Particle& particle = plant.particles[i];
@@ -95,7 +95,7 @@ void ReferenceStepper::eliminate(const Plant& plant, const Substep& step) {
 
 // Root to leaves: accelerations, the new state, its largest gap. False when anything is not finite.
 bool ReferenceStepper::advance(Plant& plant, const Substep& step) {
-  const auto& [alpha_m, alpha_f, gamma, beta] = step.method;
+  const auto& [alpha_m, alpha_f, gamma, beta, before] = step.method;
   const double h = step.h, h2 = h * h;
   double sum = 0;  // finite exactly when every number added is
   for (size_t i = 0; i < plant.particles.size(); ++i) {

@@ -24,6 +24,9 @@ using lanes::Pack;
 using lanes::StepView;
 using namespace lanes;  // strides
 
+// m: what the gap of a particle without length is measured against.
+constexpr double kShortest = 1e-3;
+
 // Record of a pack: Lanes at these places.
 constexpr int kFrame = 0;         // F, D = F B⁻¹: 18
 constexpr int kLeverChild = 18;   // r_c: 3
@@ -87,8 +90,7 @@ inline void set_motion(const Rows<double>& rows, int lanes, const MotionL& m) {
 
 // Poses at the moment of balance if a₁ were 0, and every particle's own block and load.
 inline void predict(const StepView& view, size_t begin, size_t end) {
-  const double t = (1 - view.alpha_f) * view.h, t2 = t * view.h * (0.5 - view.beta),
-               tv = t * (1 - view.gamma);
+  const double t = (1 - view.alpha_f) * view.h, t2 = t * view.h * view.before, tv = t * (1 - view.gamma);
   const Vec3L gravity{all(view.gravity[0]), all(view.gravity[1]), all(view.gravity[2])};
   for (size_t i = begin; i < end; ++i) {
     const Pack& pack = view.packs[i];
@@ -186,8 +188,7 @@ inline void assemble(const StepView& view, size_t begin, size_t end) {
     store3(implicit * C_b, record + 4 * (kSpring + 3));
     store3(force, record + 4 * kAction);
     store3(moment, record + 4 * (kAction + 3));
-    // A particle without length is measured against a millionth of a metre.
-    const Lanes length = max(half_length + half_length, all(1e-6));
+    const Lanes length = max(half_length + half_length, all(kShortest));
     store(max(max(C_s.x, C_s.y), C_s.z) > zero ? all(1) / (length * length) : zero, record + 4 * kGapWeight);
   }
 }
@@ -346,7 +347,7 @@ inline void substitute(const StepView& view, size_t begin, size_t end) {
 // Root to leaves: accelerations, the new state, its largest gap. Of a particle that is done, its pose holds
 // the new position and orientation and, in place of the velocities, the accelerations.
 inline AdvanceResult advance(const StepView& view, size_t begin, size_t end) {
-  const double h = view.h, h2 = h * h, b = view.beta, c = view.gamma;
+  const double h = view.h, h2 = h * h, b0 = view.before, b1 = view.after, c = view.gamma;
   Lanes gap = all(0), unfinite = all(0);
   for (size_t i = end; i-- > begin;) {
     const Pack& pack = view.packs[i];
@@ -357,9 +358,9 @@ inline AdvanceResult advance(const StepView& view, size_t begin, size_t end) {
     MotionL n;
     n.acceleration = a1.linear;
     n.angular_acceleration = a1.angular;
-    n.position = m.position + h * m.velocity + h2 * ((0.5 - b) * m.acceleration + b * n.acceleration);
+    n.position = m.position + h * m.velocity + h2 * (b0 * m.acceleration + b1 * n.acceleration);
     const Vec3L turn =
-        h * m.angular_velocity + h2 * ((0.5 - b) * m.angular_acceleration + b * n.angular_acceleration);
+        h * m.angular_velocity + h2 * (b0 * m.angular_acceleration + b1 * n.angular_acceleration);
     n.orientation = normalized(rotation_exp(turn) * m.orientation);
     n.velocity = m.velocity + h * ((1 - c) * m.acceleration + c * n.acceleration);
     n.angular_velocity =

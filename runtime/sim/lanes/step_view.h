@@ -35,7 +35,9 @@ struct StepView {
   double* record;          ///< kRecordLanes × 4 per pack
   const Pack* packs;       ///< children in earlier packs than parents
   double gravity[3];
-  double h, alpha_m, alpha_f, gamma, beta;
+  double h, alpha_m, alpha_f;
+  /// x₁ = x₀ + h v₀ + h² (before a₀ + after a₁): ½−β and β. v₁ = v₀ + h ((1−γ) a₀ + γ a₁).
+  double before, after, gamma;
   double position_rate, velocity_rate;  ///< k₁, k₂
 };
 
