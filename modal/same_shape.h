@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesher/base/mesh.h"
+#include "mesher/surface/solid_domain.h"
 #include "modal/carried_mass.h"
 
 namespace liana {
@@ -15,6 +16,9 @@ struct Solid {
   const Mesh* surface = nullptr;     ///< closed, oriented outward, free of self-intersection
   std::span<const uint8_t> is_root;  ///< per triangle: 1 on the interface that is held
   std::vector<CarriedMass> carried;  ///< what hangs on it
+  std::span<const Section> line;     ///< its sections; where there are some, a beam stands in for failed tets
+  double volume = 0;                 ///< m³, of the sections' solid; 0: unknown
+  bool is_beam = false;              ///< solve the beam only: the surface is no solid
 };
 
 /// x' = scale · rotation · x + translation

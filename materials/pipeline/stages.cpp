@@ -90,7 +90,8 @@ bool Stages::find_modes() {
   std::vector<Solid> solids;
   for (const DomainId id : domains) {
     const Piece& piece = pieces_[id.index()];
-    solids.push_back({&piece.solid.surface, piece.solid.is_root, piece.carried});
+    solids.push_back({&piece.solid.surface, piece.solid.is_root, piece.carried, piece.solid.centreline,
+                      piece.solid.volume, piece.solid.is_beam});
   }
   DomainModesOptions mode_options;
   mode_options.modes.element = options_.element;
@@ -135,7 +136,7 @@ BakedDomain Stages::baked(DomainId id) const {
           .stiffness_scaling = alpha_k,
           .youngs_modulus = alpha_k * species_.default_material.youngs_modulus,
           .density = alpha_m * species_.default_material.density,
-          .route = piece.solid.route,
+          .route = piece.solid.route + piece.modes.note,
           .solved_as = DomainId(piece.modes.solved_as),
           .centreline = stations(piece.solid.centreline, normal),
           .flat_normal = normal,
