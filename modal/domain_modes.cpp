@@ -1,5 +1,6 @@
 #include "modal/domain_modes.h"
 
+#include <fmt/core.h>
 #include <malloc.h>
 
 #include <algorithm>
@@ -7,7 +8,9 @@
 #include <cmath>
 #include <map>
 
+#include "mesher/base/error.h"
 #include "mesher/base/parallel.h"
+#include "modal/beam_mode.h"
 #include "modal/taper_field.h"
 
 namespace liana {
@@ -58,8 +61,42 @@ struct Seconds {
   double tets = 0, modes = 0;
 };
 
+DomainModes result_of(Modes&& modes) {
+  DomainModes result;
+  result.frequencies = std::move(modes.frequencies);
+  result.tip_direction = std::move(modes.tip_direction);
+  result.sway = modes.sway;
+  result.dof = modes.dof;
+  result.iterations = modes.iterations;
+  result.residual = modes.residual;
+  result.converged = modes.converged;
+  return result;
+}
+
+/// `reason`: why there are no tets; empty if the solid is a beam from the start.
+DomainModes solve_beam(const Solid& solid, const ElasticMaterial& material, const DomainModesOptions& options,
+                       const std::string& reason) {
+  DomainModes result;
+  try {
+    // The line of a solid runs on beyond a closed tip; its volume says where it ends.
+    const std::vector<Section> line = solid.is_beam
+                                          ? std::vector<Section>(solid.line.begin(), solid.line.end())
+                                          : carried_to_ends(solid.line);
+    result = result_of(
+        beam_modes(line, solid.is_beam ? 0 : solid.volume, material, solid.carried, options.modes.modes));
+    result.as_beam = true;
+    if (!reason.empty()) result.note = "+solved-as-beam (" + reason + ")";
+    if (!solid.taper.uniform()) result.note += "+taper-left-out";
+    if (!result.converged) result.failure = "the beam's lowest mode did not converge";
+  } catch (const Error& error) {
+    result.failure = reason.empty() ? error.what() : reason;
+  }
+  return result;
+}
+
 DomainModes solve(const Solid& solid, const ElasticMaterial& material, const DomainModesOptions& options,
                   Seconds& seconds) {
+  if (solid.is_beam) return solve_beam(solid, material, options, "");
   DomainModes result;
   auto start = std::chrono::steady_clock::now();
   try {
@@ -68,20 +105,18 @@ DomainModes solve(const Solid& solid, const ElasticMaterial& material, const Dom
     start = std::chrono::steady_clock::now();
     std::vector<ElementScaling> scaling;
     if (!solid.taper.uniform()) scaling = tapered(tets, solid.taper);
-    Modes modes = lowest_modes(tets, material, solid.carried, options.modes, scaling);
+    result = result_of(lowest_modes(tets, material, solid.carried, options.modes, scaling));
     seconds.modes += seconds_since(start);
-    result.frequencies = std::move(modes.frequencies);
-    result.tip_direction = std::move(modes.tip_direction);
-    result.sway = modes.sway;
     result.tets = static_cast<uint32_t>(tets.tets.size());
-    result.dof = modes.dof;
-    result.iterations = modes.iterations;
-    result.residual = modes.residual;
-    result.converged = modes.converged;
+    if (tets.polished) result.note = "+polished-tets";
+    if (!result.converged)
+      result.failure = fmt::format("its lowest mode did not converge (residual {:.1e})", result.residual);
   } catch (const Error& error) {
     result.failure = error.what();
   }
-  return result;
+  if (result.failure.empty() || solid.line.empty()) return result;
+  const DomainModes beam = solve_beam(solid, material, options, result.failure);
+  return beam.failure.empty() ? beam : result;
 }
 
 }  // namespace

@@ -21,7 +21,9 @@ struct DomainModes {
   bool converged = false;
   size_t solved_as =
       0;  ///< the solid whose solution this is, by index: itself, or an earlier copy of its shape
-  std::string failure;  ///< why there are no modes; empty if there are
+  std::string failure;   ///< why there are no modes; empty if there are
+  bool as_beam = false;  ///< solved as a beam through its sections (beam_mode.h), within 3 %
+  std::string note;      ///< what a user should know of the way, each with a leading "+"
 };
 
 /// Of a copy of the original under the similarity, of the same material.

@@ -58,7 +58,7 @@ std::optional<Similarity> find_similarity(const Solid& from, const Solid& to) {
   const Mesh &a = *from.surface, &b = *to.surface;
   if (a.positions.size() != b.positions.size() || a.triangles != b.triangles) return {};
   if (!std::equal(from.is_root.begin(), from.is_root.end(), to.is_root.begin(), to.is_root.end())) return {};
-  if (!(from.taper == to.taper)) return {};
+  if (!(from.taper == to.taper) || from.is_beam != to.is_beam) return {};
   if (from.carried.size() != to.carried.size() || a.positions.empty()) return {};
   const Similarity s = best_similarity(a.positions, b.positions);
   const ShapeSignature size = shape_signature(to);

@@ -8,6 +8,7 @@
 #include "mesher/base/mesh.h"
 #include "mesher/base/similarity.h"
 #include "mesher/base/taper_law.h"
+#include "mesher/surface/solid_domain.h"
 #include "modal/carried_mass.h"
 
 namespace liana {
@@ -18,6 +19,9 @@ struct Solid {
   std::span<const uint8_t> is_root;  ///< per triangle: 1 on the interface that is held
   std::vector<CarriedMass> carried;  ///< what hangs on it
   TaperLaw taper = {};               ///< of E and density along it, [Wang17] Eq. 11
+  std::span<const Section> line;     ///< its sections; where there are some, a beam stands in for failed tets
+  double volume = 0;                 ///< m³, of the sections' solid; 0: unknown
+  bool is_beam = false;              ///< solve the beam only: the surface is no solid
 };
 
 /// Numbers that equal shapes share: enough to sort by, never enough to call two shapes equal.

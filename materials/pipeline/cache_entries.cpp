@@ -103,16 +103,16 @@ std::string encode(const CachedCopy& copy) {
 }
 
 std::string encode(const SolidDomain& solid, bool with_surface) {
-  const auto& [surface, is_root, root, length, volume, centreline, route] = solid;
+  const auto& [surface, is_root, root, length, volume, centreline, route, is_beam] = solid;
   const auto& [positions, triangles] = with_surface ? surface : Mesh{};
   Packer packer;
   packer.add(Content::Solid)
       .add(positions)
       .add(triangles)
       .add(with_surface ? is_root : std::vector<uint8_t>{});
-  packer.add(root).add(length).add(volume).add(route).add(static_cast<uint32_t>(centreline.size()));
-  for (const auto& [centre, half_width, half_thickness, thin_axis] : centreline)
-    packer.add(centre).add(half_width).add(half_thickness).add(thin_axis);
+  packer.add(root).add(length).add(volume).add(route).add(uint8_t{is_beam}).add(static_cast<uint32_t>(centreline.size()));
+  for (const auto& [centre, half_width, half_thickness, thin_axis, area] : centreline)
+    packer.add(centre).add(half_width).add(half_thickness).add(thin_axis).add(area);
   return packer.bytes();
 }
 
@@ -130,17 +130,19 @@ std::variant<CachedCopy, SolidDomain> decode_geometry(std::string_view bytes) {
   }
   SolidDomain solid;
   uint32_t sections;
+  uint8_t is_beam;
   unpacker.get(solid.surface.positions).get(solid.surface.triangles).get(solid.is_root);
-  unpacker.get(solid.root).get(solid.length).get(solid.volume).get(solid.route).get(sections);
+  unpacker.get(solid.root).get(solid.length).get(solid.volume).get(solid.route).get(is_beam).get(sections);
+  solid.is_beam = is_beam != 0;
   solid.centreline.resize(sections);
-  for (auto& [centre, half_width, half_thickness, thin_axis] : solid.centreline)
-    unpacker.get(centre).get(half_width).get(half_thickness).get(thin_axis);
+  for (auto& [centre, half_width, half_thickness, thin_axis, area] : solid.centreline)
+    unpacker.get(centre).get(half_width).get(half_thickness).get(thin_axis).get(area);
   return solid;
 }
 
 uint64_t modes_key(uint64_t geometry_key, const Solid& solid, const ElasticMaterial& material,
                    const DomainModesOptions& options) {
-  const auto& [surface, is_root, carried, taper] = solid;
+  const auto& [surface, is_root, carried, taper, line, volume, is_beam] = solid;
   const auto& [root_scaling, tip_scaling, epsilon3] = taper;
   const auto& [youngs_modulus, density, poisson_ratio] = material;
   const auto& [mode_options, tets, share, threads] = options;
@@ -156,12 +158,12 @@ uint64_t modes_key(uint64_t geometry_key, const Solid& solid, const ElasticMater
 
 std::string encode(const CachedModes& cached, const ElasticMaterial& material) {
   const auto& [frequencies, tip_direction, sway, tets, dof, iterations, residual, converged, solved_as,
-               failure] = cached.modes;
+               failure, as_beam, note] = cached.modes;
   const auto& [sway_frequencies, sway_directions] = sway;
   Packer packer;
   packer.add(cached.source_key).add(material.youngs_modulus).add(material.density);
   packer.add(frequencies).add(tip_direction).add(sway_frequencies).add(sway_directions);
-  packer.add(tets).add(dof).add(iterations).add(residual).add(uint8_t{converged}).add(failure);
+  packer.add(tets).add(dof).add(iterations).add(residual).add(uint8_t{converged}).add(failure).add(uint8_t{as_beam}).add(note);
   return packer.bytes();
 }
 
@@ -169,12 +171,13 @@ CachedModes decode_modes(std::string_view bytes, const ElasticMaterial& material
   CachedModes cached;
   DomainModes& m = cached.modes;
   double youngs_modulus, density;
-  uint8_t converged;
+  uint8_t converged, as_beam;
   Unpacker unpacker(bytes);
   unpacker.get(cached.source_key).get(youngs_modulus).get(density);
   unpacker.get(m.frequencies).get(m.tip_direction).get(m.sway.frequencies).get(m.sway.directions);
-  unpacker.get(m.tets).get(m.dof).get(m.iterations).get(m.residual).get(converged).get(m.failure);
+  unpacker.get(m.tets).get(m.dof).get(m.iterations).get(m.residual).get(converged).get(m.failure).get(as_beam).get(m.note);
   m.converged = converged != 0;
+  m.as_beam = as_beam != 0;
   const double faster = std::sqrt(material.youngs_modulus / youngs_modulus * (density / material.density));
   for (double& f : m.frequencies) f *= faster;
   for (double& f : m.sway.frequencies) f *= faster;

@@ -128,6 +128,7 @@ SolidDomain moved(const SolidDomain& solid, const Similarity& similarity) {
   for (Section& section : copy.centreline) {
     section.centre = similarity.point(section.centre);
     section.half_width *= similarity.scale, section.half_thickness *= similarity.scale;
+    section.area *= similarity.scale * similarity.scale;
     section.thin_axis = similarity.rotation * section.thin_axis;
   }
   return copy;

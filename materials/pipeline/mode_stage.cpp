@@ -29,7 +29,8 @@ bool Stages::find_modes() {
   const ElasticMaterial& material = species_.default_material;
   const DomainModesOptions mode_options = this->mode_options();
   const auto solid_of = [&](const Piece& piece) {
-    return Solid{&piece.solid.surface, piece.solid.is_root, piece.carried, piece.taper};
+    return Solid{&piece.solid.surface,   piece.solid.is_root, piece.carried,      piece.taper,
+                 piece.solid.centreline, piece.solid.volume,  piece.solid.is_beam};
   };
 
   std::vector<uint64_t> keys(pieces_.size(), 0);

@@ -98,7 +98,7 @@ BakedDomain Stages::baked(DomainId id) const {
           .stiffness_scaling = alpha_k,
           .youngs_modulus = alpha_k * species_.default_material.youngs_modulus,
           .density = alpha_m * species_.default_material.density,
-          .route = piece.solid.route,
+          .route = piece.solid.route + piece.modes.note,
           .solved_as = DomainId(piece.modes.solved_as),
           .centreline = stations(piece.solid.centreline, normal),
           .flat_normal = normal,

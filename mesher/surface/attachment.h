@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesher/plant/segmented_plant.h"
+#include "mesher/surface/triangle_tree.h"
 
 namespace liana {
 
@@ -23,13 +24,12 @@ class Attachment {
   uint32_t nearest(const Mesh& mesh, const std::vector<uint32_t>& candidates) const;
 
  private:
-  double distance(const Vec3& point, double best) const;  ///< m; a value above `best` may be too large
+  double distance(const Vec3& point, double best) const;  ///< m; at most `best`
   bool inside(const Vec3& point) const;
 
   const Mesh* parent_ = nullptr;
   Eigen::AlignedBox3d box_;
-  std::vector<Vec3> centres_;  // of the balls around the parent's triangles
-  std::vector<double> radii_;
+  TriangleTree tree_;  // over the parent's triangles
 };
 
 }  // namespace liana

@@ -4,11 +4,14 @@
 #include <cmath>
 #include <numeric>
 
+#include "mesher/base/error.h"
 #include "mesher/base/weld.h"
 #include "mesher/plant/segmented_plant.h"
 #include "mesher/surface/attachment.h"
 #include "mesher/surface/cap.h"
+#include "mesher/surface/clean_shell.h"
 #include "mesher/surface/geodesic.h"
+#include "mesher/surface/mend.h"
 #include "mesher/surface/root_interface.h"
 #include "mesher/surface/slice.h"
 
@@ -172,7 +175,14 @@ bool closed_skin(const Mesh& shell, Mesh& skin, Adjacency& adjacency) {
   if (shell.triangles.size() < 8) return false;
   skin = compacted(shell);
   adjacency = find_adjacency(skin);
-  if (!adjacency.manifold || !adjacency.oriented) return false;
+  if (!adjacency.manifold || !adjacency.oriented) {
+    try {
+      skin = clean_shell(mend(skin).mesh, "skin").mesh;
+    } catch (const Error&) {
+      return false;
+    }
+    adjacency = find_adjacency(skin);
+  }
   if (!adjacency.closed) {
     for (const std::vector<uint32_t>& loop : border_loops(skin, adjacency)) add_lid(skin, loop);
     adjacency = find_adjacency(skin);

@@ -33,8 +33,8 @@ struct BranchAxis {
   int parent = -1;      ///< the axis it joins
 };
 
-/// Closes open ends, turns the surface outward and measures distances from its lowest end. False if it is no
-/// oriented manifold in one part.
+/// Mends and closes the surface, turns it outward and measures distances from its lowest end. False if no
+/// oriented manifold in one part comes out.
 bool make_skin_field(const Mesh& shell, SkinField& field);
 
 /// All axes; the trunk first, parents before children.

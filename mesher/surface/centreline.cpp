@@ -84,6 +84,7 @@ std::vector<Section> find_centreline(const MarkedSurface& solid, const Vec3& roo
     const PolygonMoments cut = plane_cut(solid.mesh, at, (centre[to] - centre[from]).normalized());
     if (cut.area > 0 && cut.along_thin > 0) {
       set_half_axes(cut, line[i]);
+      line[i].area = cut.area;
       line[i].thin_axis = cut.thin;
     } else if (i > 0) {
       const Vec3 own = line[i].centre;

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <numeric>
 #include <unordered_map>
 
 #include "mesher/base/error.h"
@@ -151,13 +152,14 @@ bool wind_alike(Mesh& mesh, const Adjacency& adjacency, size_t& flipped) {
 }
 
 /// The edge-connected part with the largest area. Returns the number of parts there were.
-uint32_t keep_largest_part(Mesh& mesh, const Adjacency& adjacency) {
+uint32_t keep_largest_part(Mesh& mesh, const Adjacency& adjacency, double& share) {
   uint32_t count = 0;
   const std::vector<uint32_t> part = connected_parts(adjacency, &count);
   if (count == 1) return 1;
   std::vector<double> area(count, 0);
   for (size_t i = 0; i < part.size(); ++i) area[part[i]] += area_vector(mesh, mesh.triangles[i]).norm();
   const auto largest = static_cast<uint32_t>(std::max_element(area.begin(), area.end()) - area.begin());
+  share = area[largest] / std::accumulate(area.begin(), area.end(), 0.0);
   Mesh kept;
   kept.positions = mesh.positions;
   for (size_t i = 0; i < part.size(); ++i)
@@ -195,7 +197,7 @@ CleanShell clean_shell(const Mesh& welded, const std::string& where) {
     shell.notes += fmt::format("+{}-flipped", flipped);
     adjacency = find_adjacency(mesh);
   }
-  const uint32_t parts = keep_largest_part(mesh, adjacency);
+  const uint32_t parts = keep_largest_part(mesh, adjacency, shell.kept);
   if (parts > 1) shell.notes += fmt::format("+largest-of-{}-shells", parts);
   return shell;
 }

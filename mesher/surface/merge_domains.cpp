@@ -34,6 +34,10 @@ class Merging {
   /// The union of a keeper and its parts; those that do not join become keepers, with what grows on them.
   Mesh unite(DomainId keeper, const std::vector<DomainId>& parts) {
     const SolidDomain solid = make_solid(plant_, keeper);
+    if (solid.is_beam) {
+      leave_apart(parts);
+      return plant_.domains[keeper.index()].surface;
+    }
     SolidUnion all(solid.surface);
     size_t joined = 0;
     for (const DomainId part : parts) {
@@ -57,7 +61,8 @@ class Merging {
  private:
   bool joins(SolidUnion& all, DomainId part) const {
     try {
-      return all.add(make_solid(plant_, part).surface);
+      const SolidDomain solid = make_solid(plant_, part);
+      return !solid.is_beam && all.add(solid.surface);
     } catch (const Error& error) {
       if (error.kind != Error::Kind::Input) throw;
       return false;  // it cannot be made solid: on its own the bake says why

@@ -24,6 +24,27 @@ uint32_t farthest(const Mesh& mesh, uint32_t from, std::vector<double>& distance
   return static_cast<uint32_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
 }
 
+double marked_area(const Mesh& mesh, const std::vector<uint8_t>& marked) {
+  double area = 0;
+  for (size_t i = 0; i < marked.size(); ++i)
+    if (marked[i]) area += area_vector(mesh, mesh.triangles[i]).norm();
+  return area;
+}
+
+/// Faces that look less than 60° away from `away` within `depth` of the end: where wrinkles stop a flood.
+std::vector<uint8_t> end_slab(const Mesh& mesh, const Vec3& end, const Vec3& away, double radius) {
+  double last = -std::numeric_limits<double>::infinity();
+  for (const Vec3& p : mesh.positions)
+    if ((p - end).norm() < 3 * radius) last = std::max(last, (p - end).dot(away));
+  std::vector<uint8_t> marked;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 middle = (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) / 3;
+    marked.push_back((middle - end).norm() < 3 * radius && (middle - end).dot(away) > last - 0.5 * radius &&
+                     area_vector(mesh, t).normalized().dot(away) > 0.5);
+  }
+  return marked;
+}
+
 /// Faces connected to the seed over edges that turn by less than 35°, and that look less than 60° away from
 /// it.
 std::vector<uint8_t> flood_to_crease(const Mesh& mesh, const Adjacency& adjacency, uint32_t seed) {
@@ -86,6 +107,7 @@ std::vector<uint8_t> root_end(const Mesh& mesh, const Adjacency& adjacency, cons
       ++count;
     }
   if (count == 0) away = mesh.positions[end] - mesh.positions[tip];
+  const Vec3 around = away;
   away.normalize();
 
   uint32_t seed = 0;
@@ -99,7 +121,19 @@ std::vector<uint8_t> root_end(const Mesh& mesh, const Adjacency& adjacency, cons
       seed = i;
     }
   }
-  if (best > 0.5) return flood_to_crease(mesh, adjacency, seed);
+  // Mean square radius of what lies about a tenth up: of a tube's outline, r².
+  double square = 0;
+  for (size_t v = 0; v < mesh.positions.size() && count > 0; ++v)
+    if (std::abs(from_tip[v] - (from_tip[end] - reach)) < reach / 2) {
+      const Vec3 out = mesh.positions[v] - (mesh.positions[end] - around / count);
+      square += (out - out.dot(away) * away).squaredNorm() / count;
+    }
+  if (best > 0.5) {
+    std::vector<uint8_t> flood = flood_to_crease(mesh, adjacency, seed);
+    if (marked_area(mesh, flood) > 0.3 * kPi * square) return flood;
+    const std::vector<uint8_t> slab = end_slab(mesh, mesh.positions[end], away, std::sqrt(square));
+    return marked_area(mesh, slab) > marked_area(mesh, flood) ? slab : flood;
+  }
   std::vector<uint8_t> marked;  // a pointed end: the faces at the point
   for (const Triangle& t : mesh.triangles) marked.push_back(std::find(t.begin(), t.end(), end) != t.end());
   return marked;

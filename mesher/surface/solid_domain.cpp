@@ -1,6 +1,3 @@
-// make_solid, as its steps.
-#include "mesher/surface/solid_domain.h"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -18,6 +15,7 @@
 #include "mesher/surface/root_interface.h"
 #include "mesher/surface/self_intersection.h"
 #include "mesher/surface/sheet.h"
+#include "mesher/surface/solid_attempt.h"
 
 namespace liana {
 namespace {
@@ -128,18 +126,19 @@ Vec3 centre_of_root(const MarkedSurface& surface) {
 
 }  // namespace
 
-SolidDomain make_solid(const SegmentedPlant& plant, DomainId id) {
-  const Domain& domain = plant.domains[id.index()];
+SolidDomain attempt_solid(const Domain& domain, const Mesh& surface, const Attachment& attachment,
+                          Attempt& attempt) {
   const std::string where = fmt::format("domain '{}'", domain.name);
   const auto fail = [&](const std::string& reason, const std::string& hint) {
     return Error(Error::Kind::Input, where + ": " + reason, hint);
   };
 
-  const CleanShell shell = clean_shell(domain.surface, where);
+  CleanShell shell = clean_shell(surface, where);
+  attempt.kept = shell.kept;
   const Adjacency adjacency = find_adjacency(shell.mesh);
   const std::vector<std::vector<uint32_t>> loops = border_loops(shell.mesh, adjacency);
-  const Attachment attachment(plant, id);
   const bool flat = !loops.empty() && is_sheet(shell.mesh, loops);
+  attempt.is_sheet = flat;
   Rooted rooted = flat ? sheet(shell.mesh, loops, domain.thickness, attachment)
                        : body(shell.mesh, adjacency, loops, attachment, where);
 
@@ -152,9 +151,11 @@ SolidDomain make_solid(const SegmentedPlant& plant, DomainId id) {
   if (!closed.manifold || !closed.oriented || !closed.closed)
     throw fail("its surface touches itself where it is open",
                "separate the edges of its holes, or close them");
-  if (self_intersects(rooted.surface.mesh))
+  if (self_intersects(rooted.surface.mesh)) {
+    attempt.crossing = std::move(rooted.surface.mesh);
     throw fail("its surface passes through itself once closed",
                "straighten bends sharper than the branch is thick, or remove inner faces");
+  }
   solid.root = centre_of_root(rooted.surface);
   solid.centreline = find_centreline(rooted.surface, solid.root, solid.length, rooted.diameter);
   solid.surface = std::move(rooted.surface.mesh);

@@ -14,6 +14,7 @@ struct Section {
   double half_width;      ///< m, half axis of the ellipse with the section's second moments, wide axis
   double half_thickness;  ///< m, the same, thin axis
   Vec3 thin_axis;         ///< unit, perpendicular to the centreline
+  double area = 0;        ///< m², of the section itself; 0: that of the ellipse
 };
 
 struct SolidDomain {
@@ -23,10 +24,20 @@ struct SolidDomain {
   double length = 0;                ///< ℓ: longest geodesic from the root interface, m ([Wang17] §4.2)
   double volume = 0;                ///< enclosed, m³
   std::vector<Section> centreline;  ///< root to tip, at least 2
-  std::string route;                ///< how it was made solid, e.g. "weld+cap", "sheet-extruded"
+  std::string route;                ///< how it was made solid, e.g. "capped", "sheet-extruded+2-rings"
+  /// No solid could be made: the centreline's sections are all there is, and the surface is a tube through
+  /// them that may pass through itself. Its modes are a beam's (modal/beam_mode.h).
+  bool is_beam = false;
 };
 
-/// Throws Error{Input} naming the domain and the reason when it cannot be made solid.
+/// The repair ladder, cheapest rung first; each leaves its name in `route`:
+///   "closed", "capped", "sheet-extruded"  cleaned, wound alike, closed by lids or given its thickness
+///   "+N-slits-closed", "+N-inner-or-loose-faces-dropped", "+N-pinches-parted"  damage put right (mend.h)
+///   "+untangled"        self-intersections cut out and filled anew (untangle.h)
+///   "+alpha-wrapped"    a new surface around everything (alpha_wrap.h), pulled back onto the old one where
+///                       they are near: frequencies within 3 %
+///   "beam"              a beam through the sections (beam_shape.h): frequencies within 3 %
+/// Throws Error{Input} naming the domain and the reason when it has no recoverable shape.
 SolidDomain make_solid(const SegmentedPlant& plant, DomainId domain);
 
 }  // namespace liana

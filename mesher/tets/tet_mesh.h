@@ -13,6 +13,7 @@ struct TetMesh {
   std::vector<Vec3> positions;  ///< m
   std::vector<std::array<uint32_t, 4>> tets;
   std::vector<std::array<uint32_t, 3>> root_faces;  ///< boundary faces that are held (the root interface)
+  bool polished = false;  ///< slivers were only to be avoided by inserted points (ten times the time)
 };
 
 }  // namespace liana

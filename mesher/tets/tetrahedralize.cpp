@@ -119,8 +119,9 @@ double volume_of(const TetGenResult& mesh) {
 
 /// In the prepared mesh's units.
 TetGenResult fill(const Mesh& prepared, std::span<const uint8_t> is_root, const TetOptions& options,
-                  double volume, double thickness) {
+                  double volume, double thickness, bool& polished) {
   for (const Polish polish : {Polish::Flips, Polish::Points}) {
+    polished = polish == Polish::Points;
     TetGenResult filled = run_tetgen(prepared.positions, prepared.triangles, is_root, options, polish);
     if (!filled.failure.empty()) refuse(filled.failure);
     if (filled.tets.empty()) refuse("TetGen found no inside");
@@ -149,9 +150,9 @@ TetMesh tetrahedralize(const Mesh& surface, std::span<const uint8_t> is_root, co
   // After the jitter: what TetGen will see is what must not cross.
   if (self_intersects(prepared)) refuse("it crosses itself");
   const double scale = m.extent / kPreparedExtent;
-  TetGenResult filled = fill(prepared, is_root, options, m.volume / std::pow(scale, 3), thickness / scale);
-
   TetMesh mesh;
+  TetGenResult filled =
+      fill(prepared, is_root, options, m.volume / std::pow(scale, 3), thickness / scale, mesh.polished);
   for (const Vec3& p : filled.positions) mesh.positions.push_back(m.centre + scale * p);
   for (size_t i = 0; i < source.size(); ++i) mesh.positions[i] = surface.positions[source[i]];
   mesh.tets = std::move(filled.tets);

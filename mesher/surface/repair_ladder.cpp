@@ -1,0 +1,116 @@
+// make_solid: the rungs of the ladder, cheapest first.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "mesher/base/error.h"
+#include "mesher/base/mesh_checks.h"
+#include "mesher/base/weld.h"
+#include "mesher/surface/alpha_wrap.h"
+#include "mesher/surface/beam_shape.h"
+#include "mesher/surface/mend.h"
+#include "mesher/surface/pull_back.h"
+#include "mesher/surface/self_intersection.h"
+#include "mesher/surface/solid_attempt.h"
+#include "mesher/surface/solid_domain.h"
+#include "mesher/surface/untangle.h"
+
+namespace liana {
+namespace {
+
+constexpr double kWholePart = 0.75;  // a branch of several shells counts as one that is this share of it
+constexpr double kUntangled = 0.02;  // relative change of volume that cutting out crossings may cost
+constexpr double kAlpha = 0.4, kOffset = 1. / 200;  // of the diameter
+constexpr double kBothSides =
+    1.6;  // wrapped area over area: a sheet, or a tube wrapped inside and out, has 2
+constexpr double kMostWrapTriangles = 60'000;  // expected; beyond that a wrap takes minutes
+
+class Ladder {
+ public:
+  Ladder(const SegmentedPlant& plant, DomainId id)
+      : domain_(plant.domains[id.index()]), attachment_(plant, id) {}
+
+  SolidDomain climb() {
+    if (auto solid = try_surface(domain_.surface, "")) return *solid;
+    const Error reason = *failure_;
+    const Mended mended = mend(domain_.surface);
+    if (!mended.notes.empty())
+      if (auto solid = try_surface(mended.mesh, mended.notes)) return *solid;
+    if (auto solid = untangle(mended.notes)) return *solid;
+    if (auto solid = wrap(mended.mesh)) return *solid;
+    if (auto solid = beam_shape(domain_, attachment_)) {
+      solid->route = "beam";
+      return *solid;
+    }
+    throw reason;
+  }
+
+ private:
+  std::optional<SolidDomain> try_surface(const Mesh& surface, const std::string& notes) {
+    attempt_ = {};
+    try {
+      SolidDomain solid = attempt_solid(domain_, surface, attachment_, attempt_);
+      if (domain_.kind == DomainKind::Branch &&
+          (attempt_.kept < kWholePart || (attempt_.is_sheet && !notes.empty()))) {
+        failure_ = Error(Error::Kind::Input, fmt::format("domain '{}': it is in pieces", domain_.name),
+                         "make every piece a domain of its own");
+        return {};
+      }
+      solid.route += notes;
+      return solid;
+    } catch (const Error& error) {
+      if (error.kind != Error::Kind::Input) throw;
+      failure_ = error;
+      return {};
+    }
+  }
+
+  std::optional<SolidDomain> untangle(const std::string& notes) {
+    if (attempt_.crossing.triangles.empty()) return {};
+    const double volume = signed_volume(attempt_.crossing);
+    const std::optional<Mesh> mesh = untangled(attempt_.crossing);
+    if (!mesh || !(std::abs(signed_volume(*mesh) / volume - 1) < kUntangled)) return {};
+    return try_surface(*mesh, notes + "+untangled");
+  }
+
+  /// Alpha grows if the wrap enters the surface by its openings. A sheet is none of its business: a wrap
+  /// would
+  /// give it the thickness of its offset.
+  std::optional<SolidDomain> wrap(const Mesh& mended) {
+    const Mesh mesh = weld(mended);
+    if (mesh.triangles.empty()) return {};
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : mesh.positions) box.extend(p);
+    const double area = surface_area(mesh), diagonal = box.diagonal().norm();
+    const double diameter = std::min(area / (kPi * diagonal), diagonal);  // of a tube that long
+    if (!(diameter > 1e-4 * diagonal)) return {};
+    const double offset = kOffset * diameter;
+    for (const double alpha : {kAlpha * diameter, 3 * kAlpha * diameter}) {
+      if (2.3 * area / (alpha * alpha) > kMostWrapTriangles) continue;
+      std::optional<Mesh> wrapped = alpha_wrap(mesh, alpha, offset);
+      if (!wrapped) return {};
+      const double wrapped_area = surface_area(*wrapped);
+      if (2 * signed_volume(*wrapped) / wrapped_area < 8 * offset || wrapped_area > kBothSides * area)
+        continue;
+      const Mesh pulled = pull_back(*wrapped, mesh, 3 * offset);
+      if (!self_intersects(pulled)) wrapped = pulled;
+      if (auto solid = try_surface(*wrapped, "+alpha-wrapped")) return solid;
+    }
+    return {};
+  }
+
+  const Domain& domain_;
+  Attachment attachment_;
+  Attempt attempt_;  // of the last try
+  std::optional<Error> failure_;
+};
+
+}  // namespace
+
+SolidDomain make_solid(const SegmentedPlant& plant, DomainId domain) {
+  return Ladder(plant, domain).climb();
+}
+
+}  // namespace liana
