@@ -21,6 +21,7 @@ DampingLaw fit_damping(const std::vector<FittedBranch>& branches, DampingLaw law
   const bool spread = highest > 1.1 * lowest && determinant > 0;
   const double slope = spread ? (w * wxy - wx * wy) / determinant : 0, middle = wx / w;
   const auto factor = [&](double x) { return std::max(0.0, wy / w + slope * (x - middle)); };
+  law.constant_rayleigh = false;
   law.low_frequency = lowest, law.high_frequency = highest;
   law.low_factor = factor(lowest), law.high_factor = factor(highest);
   return law;

@@ -75,6 +75,7 @@ SpeciesFile inferred_species(const SpeciesFile& base, const InferResult& result,
   species.law.species = name;
   species.description =
       fmt::format("Inferred from {}; what it does not show is of '{}'", result.source, base.law.species);
+  species.law.model.model = MaterialModel::PowerLaw;  // what was fitted
   for (const FittedGroup& group : result.groups) {
     const std::string where = "groups." + group.group + ".";
     const GroupLaw law = base.law.group(group.group);
@@ -86,6 +87,8 @@ SpeciesFile inferred_species(const SpeciesFile& base, const InferResult& result,
     own.reference_length = std::exp(log_length);
     own.reference_frequency = group.c1 * std::pow(own.reference_length, group.epsilon1);
     own.damping = group.damping;
+    own.median_frequency = 0;    // as Eq. 8 gives it
+    if (is_new) own.match = {};  // the group it was copied from claims its domains itself
 
     const std::string from =
         fmt::format("video {}: {} tracked point{}, C1 = {:.4g} +- {:.2g} (95 %), residual {:.3g} Hz (2-norm)",

@@ -167,6 +167,32 @@ TEST(Infer, WrittenSpeciesIsReadBackWithTheFittedLaw) {
     }
 }
 
+TEST(SpeciesWriter, EveryPresetReadsBackTheSame) {
+  const ScratchFolder folder;
+  for (const std::string& name : species_names()) {
+    SpeciesFile file = read_species_file(find_species(name));
+    file.law.model.depth_discount = 0.3;  // and what the presets leave out
+    file.law.groups.begin()->second.taper.tip_scaling = 0.5;
+    file.law.groups.begin()->second.match = {"frond*", DomainKind::Leaf, 2};
+    write_file(folder / "copy.toml", species_toml(file, "copy"));
+    const SpeciesLaw back = read_species_file(folder / "copy.toml").law;
+    EXPECT_EQ(back.model.model, file.law.model.model);
+    EXPECT_EQ(back.model.depth_discount, 0.3);
+    ASSERT_EQ(back.groups.size(), file.law.groups.size());
+    for (const auto& [key, law] : file.law.groups) {
+      const GroupLaw& copy = back.groups.at(key);
+      const DomainMaterial a = evaluate(law, 0.7), b = evaluate(copy, 0.7);
+      EXPECT_EQ(a.frequency, b.frequency) << name << " " << key;
+      EXPECT_EQ(a.mass_scaling, b.mass_scaling) << name << " " << key;
+      EXPECT_EQ(a.mass_damping, b.mass_damping) << name << " " << key;
+      EXPECT_EQ(a.stiffness_damping, b.stiffness_damping) << name << " " << key;
+      EXPECT_EQ(copy.taper.tip_scaling, law.taper.tip_scaling) << name << " " << key;
+      EXPECT_EQ(copy.match.name, law.match.name) << name << " " << key;
+      EXPECT_EQ(copy.match.kind, law.match.kind) << name << " " << key;
+    }
+  }
+}
+
 TEST(Infer, ReportsAreComplete) {
   const InferResult result = infer(plucked(6), base().law, nullptr, two_branches());
   const auto json = nlohmann::json::parse(infer_json(result));
