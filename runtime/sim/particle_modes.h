@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "runtime/sim/plant.h"
-#include "runtime/sim/tree_solver.h"
+#include "runtime/sim/joints.h"
 
 namespace liana {
 
