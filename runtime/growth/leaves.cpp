@@ -32,7 +32,8 @@ BranchId Leaves::sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3&
   Vec3 side = outward.cross(forward);
   side = side.norm() > 1e-6 ? side.normalized() : forward.unitOrthogonal();
   side = Eigen::AngleAxisd(p.divergence * shoot.leaves++, forward) * side;
-  const Vec3 vary = p.variation * Vec3(random.normal(), random.normal(), random.normal());
+  Vec3 vary;  // one after the other: compilers evaluate arguments in the order they like
+  for (const int axis : {2, 1, 0}) vary[axis] = p.variation * random.normal();
   // Sideways from the stem, away from the wall, the tip hanging a little.
   Vec3 midrib = side + 0.35 * forward + vary;
   const double away = midrib.dot(outward);

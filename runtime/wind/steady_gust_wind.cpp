@@ -32,7 +32,8 @@ SteadyGustWind::SteadyGustWind(const GustParameters& p) : mean_(p.mean) {
     power += share;
     root_power.push_back(std::sqrt(share));
     const double omega = 2 * kPi * frequency, wave = omega / speed;
-    const Vec3 oblique = wave * (along + p.spread * (random.normal() * side + random.normal() * up));
+    const double upward = random.normal(), sideward = random.normal();  // in this order with every compiler
+    const Vec3 oblique = wave * (along + p.spread * (sideward * side + upward * up));
     const double turn = random.uniform(0, 2 * kPi);
     const Vec3 crosswise = p.across * std::sqrt(2.0) * (std::cos(turn) * side + std::sin(turn) * up);
     waves_.push_back({along + crosswise, oblique, omega, random.uniform(0, 2 * kPi)});

@@ -23,7 +23,9 @@ Plant fresh_plant() {
 }
 
 Vec3 random_vector(Random& random) {
-  return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+  Vec3 v;  // one after the other: compilers evaluate arguments in the order they like
+  for (double& x : v) x = random.uniform(-1, 1);
+  return v;
 }
 
 // J, of what can be seen: motion, bending, height. What joints hold in stretch is left out: they are so stiff
