@@ -40,7 +40,8 @@ AirOptions air_of(const SphWindParameters& p, const std::vector<Emitter>& emitte
 SphWind::SphWind(const SphWindParameters& p, std::span<const SdfObstacle* const> solids,
                  std::optional<double> ground_height)
     : emitters_(emitters_of(p)),
-      walls_(p.low, p.high, p.spacing / 2, 2 * p.spacing, solids, ground_height, p.threads),
+      // Beyond the support by a cell's diagonal, so that cells far from solids are known as such.
+      walls_(p.low, p.high, p.spacing / 2, 4 * p.spacing, solids, ground_height, p.threads),
       air_(air_of(p, emitters_), &walls_) {
   air_.sort();
 }
