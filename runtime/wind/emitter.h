@@ -27,7 +27,8 @@ class Emitter {
   /// Throws Error{Input} for values out of range.
   Emitter(const EmitterParameters& parameters, uint64_t seed);
 
-  /// Emits what leaves within dt. Returns how many particles found no room (domain full, or a solid in the way).
+  /// Air within one spacing before the emitter goes as the emitter says, whatever presses against it: without this
+  /// a fan's own pressure would drive its air backwards. Then emits what leaves within dt. Returns how many particles found no room (domain full, or a solid in the way).
   size_t emit(SphAir& air, double time, double dt);
 
   /// m/s, of its mean wind, gusts included.
@@ -41,6 +42,7 @@ class Emitter {
 
  private:
   double gust_at(double time) const;
+  bool contains(double across, double up) const;
 
   EmitterParameters parameters_;
   AmbientWind eddies_;
