@@ -9,14 +9,15 @@ namespace liana {
 namespace {
 
 AmbientParameters eddies_of(const EmitterParameters& p, uint64_t seed) {
-  const bool sound = p.center.allFinite() && p.direction.allFinite() && p.direction.norm() > 1e-9 && p.speed > 0 &&
-                     p.speed <= 100 && p.turbulence >= 0 && p.turbulence <= 1 && p.gust >= 0 && p.gust <= 1 &&
-                     p.gust_period > 0 && std::isfinite(p.gust_period) &&
-                     (p.shape == EmitterParameters::Shape::Disc ? p.radius > 0 && p.radius < 1e3
-                                                                : p.width > 0 && p.height > 0 &&
-                                                                      p.width + p.height < 1e3);
+  const bool sound =
+      p.center.allFinite() && p.direction.allFinite() && p.direction.norm() > 1e-9 && p.speed > 0 &&
+      p.speed <= 100 && p.turbulence >= 0 && p.turbulence <= 1 && p.gust >= 0 && p.gust <= 1 &&
+      p.gust_period > 0 && std::isfinite(p.gust_period) &&
+      (p.shape == EmitterParameters::Shape::Disc ? p.radius > 0 && p.radius < 1e3
+                                                 : p.width > 0 && p.height > 0 && p.width + p.height < 1e3);
   if (!sound)
-    throw Error(Error::Kind::Input, "a wind emitter's speed, size, direction, turbulence or gusts are out of range",
+    throw Error(Error::Kind::Input,
+                "a wind emitter's speed, size, direction, turbulence or gusts are out of range",
                 "a speed above 0 and up to 100 m/s, a positive size, turbulence and gust between 0 and 1");
   AmbientParameters eddies;
   eddies.mean = p.speed * p.direction.normalized();
