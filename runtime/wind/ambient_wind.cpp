@@ -10,7 +10,9 @@
 
 namespace liana {
 
-double von_karman_along(double n) { return 4 * n / std::pow(1 + 70.8 * n * n, 5.0 / 6); }
+double von_karman_along(double n) {
+  return 4 * n / std::pow(1 + 70.8 * n * n, 5.0 / 6);
+}
 double von_karman_across(double n) {
   return 4 * n * (1 + 755.2 * n * n) / std::pow(1 + 283.2 * n * n, 11.0 / 6);
 }
@@ -25,7 +27,7 @@ struct AmbientWind::Waves {
 namespace {
 
 constexpr double kLowest = 0.002, kHighest = 80;  // n of the slowest and the fastest waves
-constexpr double kFinest = 10;                    // turns/m across the wind: finer than a leaf is not followed
+constexpr double kFinest = 10;  // turns/m across the wind: finer than a leaf is not followed
 
 /// Share of the variance between two values of n: ∫ f S/σ² d(ln f), Simpson's rule.
 double variance_between(double (*spectrum)(double), double n0, double n1) {
@@ -52,9 +54,9 @@ __attribute__((always_inline)) inline void sum_waves(const AmbientWind::Waves& w
     const Float8 part = turns - rounded, side = part > 0 ? part : -part;
     const Float8 angle = (0.25f - side) * 6.28318531f, a2 = angle * angle;
     const Float8 cosine =
-        angle *
-        (1 + a2 * (-1.6666667e-1f +
-                   a2 * (8.3333333e-3f + a2 * (-1.9841270e-4f + a2 * (2.7557319e-6f + a2 * -2.5052108e-8f)))));
+        angle * (1 + a2 * (-1.6666667e-1f +
+                           a2 * (8.3333333e-3f +
+                                 a2 * (-1.9841270e-4f + a2 * (2.7557319e-6f + a2 * -2.5052108e-8f)))));
     u += loaded(w.ax + i) * cosine;
     v += loaded(w.ay + i) * cosine;
     s += loaded(w.az + i) * cosine;
@@ -67,9 +69,12 @@ __attribute__((always_inline)) inline void sum_waves(const AmbientWind::Waves& w
 }
 
 using Sum = void (*)(const AmbientWind::Waves&, const float (&)[3], float (&)[3]);
-void sum_plain(const AmbientWind::Waves& w, const float (&x)[3], float (&out)[3]) { sum_waves(w, x, out); }
+void sum_plain(const AmbientWind::Waves& w, const float (&x)[3], float (&out)[3]) {
+  sum_waves(w, x, out);
+}
 #if defined(__x86_64__)
-__attribute__((target("avx2"))) void sum_avx2(const AmbientWind::Waves& w, const float (&x)[3], float (&out)[3]) {
+__attribute__((target("avx2"))) void sum_avx2(const AmbientWind::Waves& w, const float (&x)[3],
+                                              float (&out)[3]) {
   sum_waves(w, x, out);
 }
 const Sum kSum = __builtin_cpu_supports("avx2") ? sum_avx2 : sum_plain;
@@ -86,8 +91,9 @@ AmbientWind::AmbientWind(const AmbientParameters& p) : parameters_(p) {
                      std::isfinite(p.length_scale) && p.coherence_decay >= 0 && p.coherence_decay <= 1000 &&
                      p.frequencies > 0 && p.waves > 0 && size_t(p.frequencies) * p.waves <= kMostWaves;
   if (!sound)
-    throw Error(Error::Kind::Input, "the ambient wind's parameters are not finite or out of range",
-                "a mean above 0 and below 200 m/s, intensity 0-2, a positive length scale, at most 512 waves");
+    throw Error(
+        Error::Kind::Input, "the ambient wind's parameters are not finite or out of range",
+        "a mean above 0 and below 200 m/s, intensity 0-2, a positive length scale, at most 512 waves");
   const Vec3 along = p.mean / speed;
   Vec3 side = along.cross(Vec3::UnitY());
   side = side.norm() > 1e-6 ? side.normalized() : along.unitOrthogonal();
@@ -139,7 +145,8 @@ void AmbientWind::velocities(std::span<const Vec3> positions, double time, std::
     const double turns = phase_[i] - frequency_[i] * time;
     phase[i] = static_cast<float>(turns - std::floor(turns));
   }
-  const Waves waves{kx_.data(), ky_.data(), kz_.data(), phase.data(), ax_.data(), ay_.data(), az_.data(), count};
+  const Waves waves{kx_.data(), ky_.data(), kz_.data(), phase.data(),
+                    ax_.data(), ay_.data(), az_.data(), count};
   for (size_t i = 0; i < positions.size(); ++i) {
     const Eigen::Vector3f place = positions[i].cast<float>();
     const float x[3] = {place.x(), place.y(), place.z()};

@@ -74,8 +74,9 @@ TEST(WindForces, ReconfigurationFollowsVogelsExponent) {
 }
 
 TEST(WindForces, LivelinessIsTheReciprocalOfMassScaling) {
-  // [Wang17] §3.2: at a given frequency a rod of α_m times the mass is α_m times as stiff (Eq. 10), so the same wind
-  // bends it 1/α_m as far. The wind's force is the same; by 5 % of 0.02 m / 1 m its own bending changes that.
+  // [Wang17] §3.2: at a given frequency a rod of α_m times the mass is α_m times as stiff (Eq. 10), so the
+  // same wind bends it 1/α_m as far. The wind's force is the same; by 5 % of 0.02 m / 1 m its own bending
+  // changes that.
   double bend[2];
   for (int i = 0; i < 2; ++i) {
     Bake bake = test::rod_bake({.length = 1, .radius = 0.01, .frequency = 3, .damping_factor = 0.3});
