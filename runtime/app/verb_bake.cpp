@@ -9,6 +9,7 @@
 #include "materials/law/species_file.h"
 #include "materials/pipeline/bake_plant.h"
 #include "materials/pipeline/bake_report.h"
+#include "materials/pipeline/baked_solids.h"
 #include "mesher/base/files.h"
 #include "mesher/base/hash.h"
 #include "mesher/io/plant_file.h"
@@ -23,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct BakeArguments {
-  fs::path plant, output, report;
+  fs::path plant, output, report, vtu;
   std::string species, model;
   std::vector<std::string> overrides;
   BakeOptions options;
@@ -51,10 +52,12 @@ int bake(BakeArguments arguments) {
   if (arguments.output.empty()) arguments.output = arguments.plant.filename().replace_extension(".bake");
   require_writable_folder(arguments.output);
   if (!arguments.report.empty()) require_writable_folder(arguments.report);
+  if (!arguments.vtu.empty()) require_writable_folder(arguments.vtu);
 
   const Stopwatch watch;
   const SpeciesFile species = read_law(arguments);
   BakeResult result;
+  VtuMesh tets;
   double read_seconds = 0;
   {
     TerminalProgress progress;  // from here on Ctrl-C is ours
@@ -63,7 +66,9 @@ int bake(BakeArguments arguments) {
     progress.throw_if_cancelled();
     result = bake_plant(plant, species.law, arguments.options, progress);
     progress.throw_if_cancelled();
+    if (!arguments.vtu.empty()) tets = domains_vtu(result.bake, baked_solids(plant, result.bake));
   }
+  if (!arguments.vtu.empty()) write_vtu(tets, arguments.vtu);
   result.bake.species_hash = species.hash;
   result.seconds.read = read_seconds;
   result.seconds.total = watch.seconds();
@@ -92,6 +97,8 @@ void add_bake_verb(CLI::App& app, int& exit_code) {
       ->option_text("NAME");
   verb->add_option("-o,--output", arguments->output, "The bake to write [the plant's name with .bake, here]");
   verb->add_option("--report", arguments->report, "Also write what was found as JSON");
+  verb->add_option("--vtu", arguments->vtu,
+                   "Also write the tets with frequency, material and lowest mode for ParaView");
   verb->add_option("--set", arguments->overrides,
                    "Change a number of the species, as level0.reference_frequency=1.2; repeatable")
       ->allow_extra_args(false)
