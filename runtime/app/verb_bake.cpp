@@ -11,6 +11,7 @@
 #include "materials/pipeline/bake_cache.h"
 #include "materials/pipeline/bake_plant.h"
 #include "materials/pipeline/bake_report.h"
+#include "materials/pipeline/baked_solids.h"
 #include "materials/pipeline/html_report.h"
 #include "materials/pipeline/model_comparison.h"
 #include "mesher/base/files.h"
@@ -29,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct BakeArguments {
-  fs::path plant, output, report, html, models;
+  fs::path plant, output, report, html, models, vtu;
   std::string species, model;
   std::vector<std::string> overrides;
   BakeOptions options;
@@ -79,7 +80,7 @@ void save_cache(BakeCache& cache, std::vector<std::string>& notes) {
 int bake(BakeArguments arguments) {
   if (arguments.output.empty()) arguments.output = arguments.plant.filename().replace_extension(".bake");
   require_writable_folder(arguments.output);
-  for (const fs::path& extra : {arguments.report, arguments.html, arguments.models})
+  for (const fs::path& extra : {arguments.report, arguments.html, arguments.models, arguments.vtu})
     if (!extra.empty()) require_writable_folder(extra);
 
   const Stopwatch watch;
@@ -87,6 +88,7 @@ int bake(BakeArguments arguments) {
   SegmentedPlant plant;
   BakeResult result;
   std::optional<BakeCache> cache;
+  VtuMesh tets;
   double read_seconds = 0, cache_seconds = 0;
   {
     TerminalProgress progress;  // from here on Ctrl-C is ours
@@ -101,7 +103,9 @@ int bake(BakeArguments arguments) {
     result = bake_plant(plant, species.law, arguments.options, progress);
     result.notes.insert(result.notes.begin(), plant.notes.begin(), plant.notes.end());
     progress.throw_if_cancelled();
+    if (!arguments.vtu.empty()) tets = domains_vtu(result.bake, baked_solids(plant, result.bake));
   }
+  if (!arguments.vtu.empty()) write_vtu(tets, arguments.vtu);
   result.bake.species_hash = species.hash;
   result.seconds.read = read_seconds;
   result.seconds.write = timed([&] { write_bake(result.bake, arguments.output); });
@@ -173,6 +177,8 @@ void add_bake_verb(CLI::App& app, int& exit_code) {
   verb->add_option("--compare-models", arguments->models,
                    "Also write what each material model would give, as CSV")
       ->option_text("FILE");
+  verb->add_option("--vtu", arguments->vtu,
+                   "Also write the tets with frequency, material and lowest mode for ParaView");
   verb->add_option("--set", arguments->overrides,
                    "Change a number of the species, as level0.reference_frequency=1.2; repeatable")
       ->allow_extra_args(false)
