@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mesher/base/parallel.h"
+#include "mesher/surface/self_intersection.h"
 #include "mesher/surface/solid_domain.h"
 #include "mesher/surface/solid_union.h"
 
@@ -43,9 +44,15 @@ class Merging {
       else
         part_of_[part.index()] = on == keeper ? part : on;
     }
+    if (joined == 0) return plant_.domains[keeper.index()].surface;
     // A hundredth of a branch's thickness, √(V / ℓ), is far below what the tetrahedra resolve.
-    return joined ? all.mesh(0.01 * std::sqrt(solid.volume / solid.length))
-                  : plant_.domains[keeper.index()].surface;
+    const double thickness = std::sqrt(solid.volume / solid.length);
+    for (const double share : {0.01, 0.001, 0.0}) {
+      Mesh mesh = all.mesh(share * thickness);
+      if (!self_intersects(mesh)) return mesh;
+    }
+    throw Error(Error::Kind::Input,
+                "the union of '" + plant_.domains[keeper.index()].name + "' passes through itself");
   }
 
   void leave_apart(const std::vector<DomainId>& parts) {
@@ -85,7 +92,7 @@ MergedPlant merge_below(const SegmentedPlant& plant, int level, unsigned threads
       surfaces[i] = merging.unite(DomainId(i), parts[i]);
     } catch (const Error& error) {
       if (error.kind != Error::Kind::Input) throw;
-      merging.leave_apart(parts[i]);  // it cannot be made solid: the bake says why
+      merging.leave_apart(parts[i]);  // they stay domains of their own, and are named
     }
   });
 
@@ -108,7 +115,7 @@ MergedPlant merge_below(const SegmentedPlant& plant, int level, unsigned threads
     }
     result.plant.domains.push_back(std::move(domain));
     if (wanted[i] != keeper)
-      notes.push_back(fmt::format("'{}' shares no volume with what it grows on: it stays a domain of its own",
+      notes.push_back(fmt::format("'{}' cannot be united with what it grows on: it stays a domain of its own",
                                   plant.domains[i].name));
   }
   notes.insert(notes.begin(),
