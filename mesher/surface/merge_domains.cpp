@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "mesher/base/parallel.h"
-#include "mesher/surface/self_intersection.h"
 #include "mesher/surface/solid_domain.h"
 #include "mesher/surface/solid_union.h"
 
@@ -49,10 +48,10 @@ class Merging {
     const double thickness = std::sqrt(solid.volume / solid.length);
     for (const double share : {0.01, 0.001, 0.0}) {
       Mesh mesh = all.mesh(share * thickness);
-      if (!self_intersects(mesh)) return mesh;
+      if (can_be_solid(keeper, mesh)) return mesh;
     }
     throw Error(Error::Kind::Input,
-                "the union of '" + plant_.domains[keeper.index()].name + "' passes through itself");
+                "the union of '" + plant_.domains[keeper.index()].name + "' cannot be made solid");
   }
 
   void leave_apart(const std::vector<DomainId>& parts) {
@@ -62,6 +61,26 @@ class Merging {
   const std::vector<DomainId>& part_of() const { return part_of_; }
 
  private:
+  /// Whether the bake's own steps accept the union, where its branch grows.
+  bool can_be_solid(DomainId keeper, const Mesh& mesh) const {
+    SegmentedPlant pair;
+    Domain domain = plant_.domains[keeper.index()];
+    if (domain.parent.valid()) {
+      pair.domains.push_back(plant_.domains[domain.parent.index()]);
+      pair.domains[0].parent = DomainId();
+      domain.parent = DomainId(size_t{0});
+    }
+    domain.surface = mesh;
+    pair.domains.push_back(std::move(domain));
+    try {
+      make_solid(pair, DomainId(pair.domains.size() - 1));
+      return true;
+    } catch (const Error& error) {
+      if (error.kind != Error::Kind::Input) throw;
+      return false;
+    }
+  }
+
   bool joins(SolidUnion& all, DomainId part) const {
     try {
       return all.add(make_solid(plant_, part).surface);
