@@ -52,7 +52,11 @@ UnitedPart part_of(const MarkedMesh& marked, const Affine3& place, int parent) {
 // the second set of graded rings change is below the 1 % of the mesh itself.
 TEST(UnitedModes, TwoHalvesOfABeamMoveAsTheWhole) {
   const double length = 1, diameter = 0.05;
-  const MarkedMesh half = make_prism(8, length / 2, diameter), whole = make_prism(8, length, diameter);
+  std::vector<double> rings = graded_stations(length / 2, diameter);
+  for (const double s : graded_stations(length / 2, diameter))
+    if (s > 0) rings.push_back(length / 2 + s);
+  const MarkedMesh half = make_prism(8, length / 2, diameter);
+  const MarkedMesh whole = make_tube({.sides = 8, .length = length, .diameter = diameter, .stations = rings});
   const Affine3 up(Eigen::Translation3d(0, length / 2, 0));
   const UnitedModes two = united_modes({part_of(half, Affine3::Identity(), -1), part_of(half, up, 0)}, 4);
   const UnitedModes one = united_modes({part_of(whole, Affine3::Identity(), -1)}, 4);
