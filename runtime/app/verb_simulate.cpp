@@ -69,6 +69,7 @@ std::string report_json(const World& world, double total_seconds, double render_
   json["anchors"] = report.anchors;
   json["redone_steps"] = report.redone_steps;
   json["contact_passes"] = report.contact_passes;
+  json["reseated_joints"] = report.reseated_joints;
   json["lost_steps"] = report.lost_steps;
   json["seconds"] = {{"total", total_seconds},
                      {"physics", report.seconds.physics},
@@ -87,6 +88,8 @@ void print_summary(const World& world, double total_seconds, double render_secon
   fmt::print("seconds: growth {:.2f}, collision {:.2f}, physics {:.2f}, render {:.2f}, total {:.2f}\n", s.growth,
              s.collision, s.physics, render_seconds, total_seconds);
   if (report.redone_steps > 0) fmt::print("note: {} steps were redone with finer substeps\n", report.redone_steps);
+  if (report.reseated_joints > 0)
+    fmt::print("note: {} joints were torn open and closed by hand\n", report.reseated_joints);
   if (report.lost_steps > 0) fmt::print("note: {} steps did not stay finite and were stopped\n", report.lost_steps);
   for (const std::string& note : world.notes()) fmt::print("note: {}\n", note);
 }

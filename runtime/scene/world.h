@@ -27,6 +27,7 @@ struct WorldReport {
   double max_penetration = 0;  ///< m, deepest that any particle ever was in an obstacle or the ground
   size_t redone_steps = 0;     ///< steps that the solver took again with finer substeps
   size_t contact_passes = 0;     ///< taken again because a contact showed only at the step's end
+  size_t reseated_joints = 0;  ///< closed by hand where the finest substeps did not hold them
   size_t lost_steps = 0;       ///< steps that did not stay finite and were stopped
   PhaseSeconds seconds;
 };
