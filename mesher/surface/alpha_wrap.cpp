@@ -1,7 +1,6 @@
 #include "mesher/surface/alpha_wrap.h"
 
 #define CGAL_DEBUG  // failed checks throw, in release builds too: the caller has other ways
-#define CGAL_NO_WARNINGS
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
