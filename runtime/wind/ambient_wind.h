@@ -10,8 +10,7 @@
 //   [Davenport 1961]
 #pragma once
 
-#include <vector>
-
+#include "runtime/wind/wave_sum.h"
 #include "runtime/wind/wind_field.h"
 
 namespace liana {
@@ -43,15 +42,9 @@ class AmbientWind : public WindField {
   Vec3 velocity(const Vec3& position, double time) const override;
   void velocities(std::span<const Vec3> positions, double time, std::span<Vec3> out) const override;
 
-  struct Waves;  ///< arrays of one number per wave
-
  private:
-  static constexpr size_t kMostWaves = 512;
-  void add_wave(const Vec3& turns, double frequency, double phase, const Vec3& amplitude);
-
   AmbientParameters parameters_;
-  std::vector<float> kx_, ky_, kz_, ax_, ay_, az_;  // turns/m; m/s; padded to a multiple of 8
-  std::vector<double> frequency_, phase_;           // Hz, turns
+  WaveSum waves_;
 };
 
 }  // namespace liana
