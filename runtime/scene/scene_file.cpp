@@ -103,6 +103,11 @@ Scene read_scene(const std::filesystem::path& path) {
   scene.time_step = table.number_or("time_step", scene.time_step, 1e-4, 0.1);
   scene.seconds = table.number_or("seconds", scene.seconds, 0, 86400);
   scene.gravity = table.vector_or("gravity", scene.gravity);
+  const std::string solver = table.text_or("solver", "direct");
+  if (solver != "direct" && solver != "shape-matching")
+    table.fail("solver", "must be \"direct\" or \"shape-matching\"",
+               "only \"direct\" moves as baked; \"shape-matching\" is the scheme of [Haedrich17]");
+  scene.solver = solver == "direct" ? Solver::Direct : Solver::ShapeMatching;
   if (const auto sun = table.table("sun")) {
     scene.to_sun = sun->vector("direction");
     if (scene.to_sun.norm() < 1e-9) sun->fail("direction", "must not be zero");

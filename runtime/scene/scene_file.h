@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesher/base/mesh.h"
+#include "runtime/sim/plant.h"
 #include "runtime/wind/sph_wind.h"
 
 namespace liana {
@@ -67,6 +68,7 @@ struct Scene {
   double time_step = 0.025;  ///< s
   double seconds = 60;       ///< how long `simulate` runs unless told otherwise
   Vec3 gravity = {0, -9.81, 0};
+  Solver solver = Solver::Direct;
   Vec3 to_sun = {0.4, 0.8, 0.45};
   SceneWind wind;
   std::vector<SceneObstacle> obstacles;

@@ -60,6 +60,7 @@ void World::add_baked(const ScenePlant& entry) {
   placement.yaw = entry.yaw;
   placement.gravity = scene_.gravity;
   placement.scheme.dt = scene_.time_step;
+  placement.scheme.solver = scene_.solver;
   CalibrationReport calibration;
   const Bake bake = read_bake(entry.bake);
   inhabitant->plant = make_plant(bake, placement, &calibration);
@@ -117,6 +118,7 @@ void World::add_climber(const SceneClimber& entry, uint64_t seed) {
   const SpeciesLaw law = entry.bake.empty() ? read_species(entry.species) : read_bake(entry.bake).law;
   inhabitant->plant.name = law.species;
   inhabitant->plant.scheme.dt = scene_.time_step;
+  inhabitant->plant.scheme.solver = scene_.solver;
   ClimberParameters parameters;
   parameters.max_particles = entry.max_particles;
   parameters.gravity = scene_.gravity;

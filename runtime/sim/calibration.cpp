@@ -21,13 +21,12 @@ std::vector<BranchId> out_of_range(const Plant& plant, const TimeScheme& scheme)
 }
 
 // From the cheapest to the dearest: a larger ρ∞ costs nothing but some damping of the stiffest modes, a
-// substep costs a step. ρ∞ = 1 damps nothing by itself and is for targets with next to no damping.
+// substep costs a step.
 std::vector<TimeScheme> candidates(const TimeScheme& wanted) {
   std::vector<TimeScheme> list{wanted};
   for (int finer = 1; finer <= 16; finer *= 2)
     for (double rho : {0.6, 0.7, 0.8, 0.9})
-      if (finer > 1 || rho > wanted.rho_infinity) list.push_back({wanted.dt, rho, wanted.substeps * finer});
-  for (int finer = 1; finer <= 16; finer *= 2) list.push_back({wanted.dt, 1.0, wanted.substeps * finer});
+      if (finer > 1 || rho > wanted.rho_infinity) list.push_back({wanted.dt, rho, wanted.substeps * finer, wanted.solver});
   return list;
 }
 

@@ -31,7 +31,12 @@ UnitOscillator discrete_oscillator(double frequency, double damping_factor, doub
   const double fastest = 0.45 / h;
   const double xi = std::clamp(damping_factor, 0.0, 0.98);
   UnitOscillator o = invert(std::min(frequency, fastest), xi, h, rho_infinity);
-  o.in_range = frequency <= fastest && xi == damping_factor && o.stiffness > 0 && o.damping >= 0;
+  // A target with next to no damping may ask for a little less than nothing. Without it the branch has at
+  // most ξ = 5e-5 too much, which no bake can tell; ρ∞ = 1, which would give it none, lets stiff directions
+  // ring until it swings up.
+  constexpr double kUnseen = 5e-5;
+  const double least = -2 * kUnseen * std::sqrt(std::max(o.stiffness, 0.0));
+  o.in_range = frequency <= fastest && xi == damping_factor && o.stiffness > 0 && o.damping >= least;
   if (o.stiffness <= 0) o.stiffness = std::pow(2 * kPi * std::min(frequency, fastest), 2);
   o.damping = std::max(o.damping, 0.0);
   return o;

@@ -34,7 +34,7 @@ ProbeResult probe(const HeldChain& chain, const ProbeOptions& options) {
   require(!chain.mode().empty(), "the chain's mode is known");
   Plant plant = chain.plant();
   // The same substeps, each seen: at 25 ms a motion of more than 20 Hz could not be told from a slower one.
-  plant.scheme = {plant.scheme.substep(), plant.scheme.rho_infinity, 1};
+  plant.scheme = {plant.scheme.substep(), plant.scheme.rho_infinity, 1, plant.scheme.solver};
   double length = 0;
   for (const Particle& particle : plant.particles) length += 2 * particle.half_length;
   const Vec3 rest = tip_of(plant);

@@ -73,6 +73,9 @@ struct Branch {
   double stiffness_scale = 1;  ///< k*/ω₁² of the last calibration, of the physical joint stiffnesses
 };
 
+/// Direct: PlantStepper's own; ShapeMatching: [Haedrich17]'s scheme, which no material drives (shape_matching.h).
+enum class Solver { Direct, ShapeMatching };
+
 /// How a plant is integrated. Its joints are calibrated for exactly these numbers: calibrate_plant() chooses
 /// rho_infinity and substeps so that every branch can swing as baked, and reports when they differ from the
 /// defaults.
@@ -80,6 +83,7 @@ struct TimeScheme {
   double dt = 0.025;          ///< s, one step as the caller sees it
   double rho_infinity = 0.6;  ///< spectral radius of generalized-α at infinite frequency
   int substeps = 1;           ///< equal parts that dt is always cut into
+  Solver solver = Solver::Direct;
 
   double substep() const { return dt / substeps; }
 };

@@ -120,6 +120,8 @@ struct PlantStepper::Substep {
 
 StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
                               std::span<const WorldSpring> transient, const StepOptions& options) noexcept {
+  if (plant.scheme.solver == Solver::ShapeMatching)
+    return shape_matching_.step(plant, external, transient, options);
   const size_t count = plant.particles.size();
   order_.update(plant.particles, false);
   now_.resize(count);

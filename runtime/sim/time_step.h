@@ -10,6 +10,7 @@
 
 #include "runtime/sim/elimination_order.h"
 #include "runtime/sim/plant.h"
+#include "runtime/sim/shape_matching.h"
 
 namespace liana {
 
@@ -62,6 +63,7 @@ class PlantStepper {
   EliminationOrder order_;
   std::vector<const WorldSpring*> springs_;  // anchors and transient ones, by part
   std::vector<uint32_t> first_spring_;       // of each part and the top
+  ShapeMatchingStepper shape_matching_;  // for plants of that scheme
   std::vector<Motion> now_, next_;           // the plant's own state stays untouched until a step is accepted
 };
 

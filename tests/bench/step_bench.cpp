@@ -66,6 +66,22 @@ void full_step(benchmark::State& state) {
 }
 BENCHMARK(full_step)->Arg(1000)->Arg(5000)->Arg(25000)->Unit(benchmark::kMillisecond);
 
+// [Haedrich17]'s scheme, one pass, beside the direct step of the same plant.
+void direct_against_shape_matching(benchmark::State& state) {
+  Plant direct = tree_of(25000), shapes = direct;
+  shapes.scheme.solver = Solver::ShapeMatching;
+  double ns = 1e9, shape_ns = 1e9;
+  for (auto _ : state) {
+    ns = std::min(ns, step_ns(direct, 20));
+    shape_ns = std::min(shape_ns, step_ns(shapes, 20));
+  }
+  state.counters["particles"] = static_cast<double>(direct.particles.size());
+  state.counters["ns_per_particle"] = ns;
+  state.counters["shape_matching_ns"] = shape_ns;
+  state.counters["direct/shape_matching"] = ns / shape_ns;
+}
+BENCHMARK(direct_against_shape_matching)->Unit(benchmark::kMillisecond);
+
 // 25,000 particles as a hundred plants, one after the other on one core.
 void full_step_of_a_hundred_plants(benchmark::State& state) {
   std::vector<Plant> plants(100, tree_of(250));
