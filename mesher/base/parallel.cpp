@@ -70,7 +70,7 @@ class Pool {
   bool ending_ = false;
 };
 
-std::mutex pool_in_use;
+std::atomic_flag pool_in_use;
 Pool& pool() {
   static Pool pool;
   return pool;
@@ -110,8 +110,9 @@ void parallel_for(size_t count, unsigned threads, const std::function<void(size_
   // The threads that wait are used unless another loop, perhaps the one that called this, has them.
   if (threads < 2) {
     work(0);
-  } else if (std::unique_lock free(pool_in_use, std::try_to_lock); free) {
+  } else if (!pool_in_use.test_and_set(std::memory_order_acquire)) {
     pool().run(threads, work);
+    pool_in_use.clear(std::memory_order_release);
   } else {
     std::vector<std::thread> others;
     for (unsigned worker = 1; worker < threads; ++worker) others.emplace_back(work, worker);

@@ -1,12 +1,28 @@
 #include "mesher/surface/alpha_wrap.h"
 
-#define CGAL_DEBUG  // failed checks throw, in release builds too: the caller has other ways
 #define CGAL_NO_WARNINGS
+#define CGAL_DEBUG  // failed checks throw, in release builds too: the caller has other ways
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
 
+#include <functional>
+
 namespace liana {
+namespace {
+
+struct TooManyPoints : std::exception {};
+
+/// Ends a wrap that has become too large to be worth it.
+struct Guard : CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
+  size_t points = 0;
+  template <typename Wrapper, typename Point>
+  void before_Steiner_point_insertion(const Wrapper&, const Point&) {
+    if (++points > kMostWrapPoints) throw TooManyPoints{};
+  }
+};
+
+}  // namespace
 
 std::optional<Mesh> alpha_wrap(const Mesh& triangles, double alpha, double offset) {
   using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
@@ -15,8 +31,10 @@ std::optional<Mesh> alpha_wrap(const Mesh& triangles, double alpha, double offse
   std::vector<std::array<std::size_t, 3>> faces;
   for (const Triangle& t : triangles.triangles) faces.push_back({t[0], t[1], t[2]});
   CGAL::Surface_mesh<Point> wrap;
+  Guard guard;
   try {
-    CGAL::alpha_wrap_3(points, faces, alpha, offset, wrap);
+    CGAL::alpha_wrap_3(points, faces, alpha, offset, wrap, CGAL::parameters::default_values(),
+                       CGAL::parameters::visitor(std::ref(guard)));
   } catch (const std::exception&) {
     return {};
   }

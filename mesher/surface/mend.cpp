@@ -83,17 +83,27 @@ bool drop_patch(Mesh& mesh) {
     for (int k = 0; k < 3; ++k) ++uses[key(t[k], t[(k + 1) % 3])];
   uint32_t count = 0;
   const std::vector<uint32_t> part = connected_parts(adjacency, &count);
-  std::vector<double> area(count, 0);
-  std::vector<uint8_t> at_joint(count, 0);
+  std::vector<double> area(count, 0), rim(count, 0);
+  std::vector<uint8_t> at_joint(count, 0), has_border(count, 0);
   for (size_t i = 0; i < part.size(); ++i) {
     const Triangle& t = mesh.triangles[i];
     area[part[i]] += area_vector(mesh, t).norm();
-    for (int k = 0; k < 3; ++k) at_joint[part[i]] |= uses[key(t[k], t[(k + 1) % 3])] > 2;
+    for (int k = 0; k < 3; ++k) {
+      const int n = uses[key(t[k], t[(k + 1) % 3])];
+      has_border[part[i]] |= n == 1;
+      at_joint[part[i]] |= n > 2;
+      if (n > 2) rim[part[i]] += (mesh.positions[t[k]] - mesh.positions[t[(k + 1) % 3]]).norm();
+    }
   }
+  // What stands on its rim like a twig, larger than anything flat within that rim, is no inner wall.
+  const auto may_go = [&](uint32_t p) {
+    return at_joint[p] && (has_border[p] || area[p] < 2 * rim[p] * rim[p] / (4 * kPi));
+  };
   uint32_t smallest = count;
   for (uint32_t p = 0; p < count; ++p)
-    if (at_joint[p] && (smallest == count || area[p] < area[smallest])) smallest = p;
-  if (area[smallest] > kSmallPatch * std::accumulate(area.begin(), area.end(), 0.0)) return false;
+    if (may_go(p) && (smallest == count || area[p] < area[smallest])) smallest = p;
+  if (smallest == count || area[smallest] > kSmallPatch * std::accumulate(area.begin(), area.end(), 0.0))
+    return false;
   size_t kept = 0;
   for (size_t i = 0; i < part.size(); ++i)
     if (part[i] != smallest) mesh.triangles[kept++] = mesh.triangles[i];
@@ -171,6 +181,7 @@ Mended mend(const Mesh& welded) {
   if (slits) result.notes += fmt::format("+{}-slits-closed", slits);
   if (patches) result.notes += fmt::format("+{}-inner-or-loose-faces-dropped", patches);
   if (pinches) result.notes += fmt::format("+{}-pinches-parted", pinches);
+  if (result.notes.empty()) return {welded, {}};
   mesh = compacted(mesh);
   return result;
 }

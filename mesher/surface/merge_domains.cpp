@@ -47,9 +47,15 @@ class Merging {
       else
         part_of_[part.index()] = on == keeper ? part : on;
     }
+    if (joined == 0) return plant_.domains[keeper.index()].surface;
     // A hundredth of a branch's thickness, √(V / ℓ), is far below what the tetrahedra resolve.
-    return joined ? all.mesh(0.01 * std::sqrt(solid.volume / solid.length))
-                  : plant_.domains[keeper.index()].surface;
+    const double thickness = std::sqrt(solid.volume / solid.length);
+    for (const double share : {0.01, 0.001, 0.0}) {
+      Mesh mesh = all.mesh(share * thickness);
+      if (can_be_solid(keeper, mesh)) return mesh;
+    }
+    throw Error(Error::Kind::Input,
+                "the union of '" + plant_.domains[keeper.index()].name + "' cannot be made solid");
   }
 
   void leave_apart(const std::vector<DomainId>& parts) {
@@ -59,6 +65,26 @@ class Merging {
   const std::vector<DomainId>& part_of() const { return part_of_; }
 
  private:
+  /// Whether the bake's own steps accept the union, where its branch grows.
+  bool can_be_solid(DomainId keeper, const Mesh& mesh) const {
+    SegmentedPlant pair;
+    Domain domain = plant_.domains[keeper.index()];
+    if (domain.parent.valid()) {
+      pair.domains.push_back(plant_.domains[domain.parent.index()]);
+      pair.domains[0].parent = DomainId();
+      domain.parent = DomainId(size_t{0});
+    }
+    domain.surface = mesh;
+    pair.domains.push_back(std::move(domain));
+    try {
+      make_solid(pair, DomainId(pair.domains.size() - 1));
+      return true;
+    } catch (const Error& error) {
+      if (error.kind != Error::Kind::Input) throw;
+      return false;
+    }
+  }
+
   bool joins(SolidUnion& all, DomainId part) const {
     try {
       const SolidDomain solid = make_solid(plant_, part);
@@ -90,7 +116,7 @@ MergedPlant merge_below(const SegmentedPlant& plant, int level, unsigned threads
       surfaces[i] = merging.unite(DomainId(i), parts[i]);
     } catch (const Error& error) {
       if (error.kind != Error::Kind::Input) throw;
-      merging.leave_apart(parts[i]);  // it cannot be made solid: the bake says why
+      merging.leave_apart(parts[i]);  // they stay domains of their own, and are named
     }
   });
 
@@ -113,7 +139,7 @@ MergedPlant merge_below(const SegmentedPlant& plant, int level, unsigned threads
     }
     result.plant.domains.push_back(std::move(domain));
     if (wanted[i] != keeper)
-      notes.push_back(fmt::format("'{}' shares no volume with what it grows on: it stays a domain of its own",
+      notes.push_back(fmt::format("'{}' cannot be united with what it grows on: it stays a domain of its own",
                                   plant.domains[i].name));
   }
   notes.insert(notes.begin(),

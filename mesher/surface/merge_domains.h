@@ -16,8 +16,9 @@ struct MergedPlant {
 
 /// Every branch of `level` and all branches that grow on it become one domain: the union of their solids, so
 /// that its modes are those of the branch with its twigs. Leaves stay leaves ([Wang17] §4.3 gives them a law
-/// of their own) and hang on what their twig became. A branch that shares no volume with what it grows on
-/// stays a domain of its own. threads 0: one a core. Throws Error{Cancelled}.
+/// of their own) and hang on what their twig became. A branch that shares no volume with what it grows on,
+/// or whose union with it has no valid surface, stays a domain of its own. threads 0: one a core. Throws
+/// Error{Cancelled}.
 MergedPlant merge_below(const SegmentedPlant& plant, int level, unsigned threads, Progress& progress);
 
 }  // namespace liana

@@ -20,12 +20,20 @@
 namespace liana {
 namespace {
 
-constexpr double kWholePart = 0.75;  // a branch of several shells counts as one that is this share of it
-constexpr double kUntangled = 0.02;  // relative change of volume that cutting out crossings may cost
+constexpr double kWholePart = 0.75;    // a branch of several shells counts as one that is this share of it
+constexpr double kUntangled = 0.02;    // relative change of volume that cutting out crossings may cost
+constexpr double kWholeExtent = 0.85;  // of the box's diagonal: what a mended surface must keep
 constexpr double kAlpha = 0.4, kOffset = 1. / 200;  // of the diameter
 constexpr double kBothSides =
     1.6;  // wrapped area over area: a sheet, or a tube wrapped inside and out, has 2
 constexpr double kMostWrapTriangles = 60'000;  // expected; beyond that a wrap takes minutes
+
+double extent(const Mesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Triangle& t : mesh.triangles)
+    for (const uint32_t v : t) box.extend(mesh.positions[v]);
+  return box.isEmpty() ? 0 : box.diagonal().norm();
+}
 
 class Ladder {
  public:
@@ -56,6 +64,12 @@ class Ladder {
           (attempt_.kept < kWholePart || (attempt_.is_sheet && !notes.empty()))) {
         failure_ = Error(Error::Kind::Input, fmt::format("domain '{}': it is in pieces", domain_.name),
                          "make every piece a domain of its own");
+        return {};
+      }
+      if (!notes.empty() && extent(solid.surface) < kWholeExtent * extent(domain_.surface)) {
+        failure_ = Error(Error::Kind::Input,
+                         fmt::format("domain '{}': a part of it is lost when it is mended", domain_.name),
+                         "mend its surface by hand");
         return {};
       }
       solid.route += notes;

@@ -1,5 +1,6 @@
 #include "mesher/surface/self_intersection.h"
 
+#define CGAL_NO_WARNINGS
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangle_3.h>
 #include <CGAL/intersections.h>

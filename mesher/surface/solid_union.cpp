@@ -1,5 +1,6 @@
 #include "mesher/surface/solid_union.h"
 
+#define CGAL_NO_WARNINGS
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
 #include <CGAL/Polygon_mesh_processing/corefinement.h>

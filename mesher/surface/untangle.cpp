@@ -1,7 +1,7 @@
 #include "mesher/surface/untangle.h"
 
-#define CGAL_DEBUG  // failed checks throw, in release builds too: the caller has other ways
 #define CGAL_NO_WARNINGS
+#define CGAL_DEBUG  // failed checks throw, in release builds too: the caller has other ways
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/repair_self_intersections.h>

@@ -62,7 +62,7 @@ void fill_input(tetgenio& in, std::span<const Vec3> positions, std::span<const T
 }
 
 /// The steps of TetGen's tetrahedralize() for the switches p, Y and q, without its exactinit() and rand().
-void mesh_volume(tetgenbehavior& behavior, tetgenio& in, tetgenio& out) {
+void mesh_volume(tetgenbehavior& behavior, bool refine, tetgenio& in, tetgenio& out) {
   // When TetGen throws or fails an assertion, its own destructor reads freed memory: such a mesh is given up
   // as it is.
   auto* mesh = new tetgenmesh;
@@ -77,7 +77,7 @@ void mesh_volume(tetgenbehavior& behavior, tetgenio& in, tetgenio& out) {
   mesh->carveholes();
   if (mesh->subvertstack->objects > 0) mesh->suppresssteinerpoints();
   mesh->recoverdelaunay();
-  mesh->delaunayrefinement();
+  if (refine) mesh->delaunayrefinement();
   mesh->optimizemesh();
   mesh->outnodes(&out);
   mesh->outelements(&out);
@@ -107,7 +107,7 @@ TetGenResult run_tetgen(std::span<const Vec3> positions, std::span<const Triangl
   behavior.tetrahedraperblock = 4 * block;
   behavior.brio_hilbert = 0;
   try {
-    if (!survives_assertions([&] { mesh_volume(behavior, in, out); })) {
+    if (!survives_assertions([&] { mesh_volume(behavior, polish == Polish::Points, in, out); })) {
       result.failure = "TetGen failed an assertion of its own";
       return result;
     }

@@ -24,7 +24,7 @@ struct TetGenResult {
 /// How hard TetGen works on badly shaped tets.
 enum class Polish {
   Flips,   ///< only reconnects
-  Points,  ///< also inserts and moves points: no slivers remain, ten times slower
+  Points,  ///< also inserts and moves points, to TetOptions' bounds: no slivers remain, ten times slower
 };
 
 /// Extents of the input must not exceed 1 along any axis. The same input gives the same result on any thread.

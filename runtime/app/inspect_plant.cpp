@@ -20,12 +20,16 @@ Box box_of(const Mesh& mesh) {
 
 /// "closed", or how it is not: edges with one triangle are open, with three or more branching.
 std::string closedness(const Mesh& mesh) {
-  std::map<std::pair<uint32_t, uint32_t>, int> edges;
+  std::vector<std::pair<uint32_t, uint32_t>> sides;
   for (const Triangle& triangle : mesh.triangles)
     for (int corner = 0; corner < 3; ++corner)
-      ++edges[std::minmax(triangle[corner], triangle[(corner + 1) % 3])];
+      sides.push_back(std::minmax(triangle[corner], triangle[(corner + 1) % 3]));
+  std::sort(sides.begin(), sides.end());
   size_t open = 0, branching = 0;
-  for (const auto& [edge, triangles] : edges) open += triangles == 1, branching += triangles > 2;
+  for (size_t i = 0, end = 0; i < sides.size(); i = end) {
+    while (end < sides.size() && sides[end] == sides[i]) ++end;
+    open += end - i == 1, branching += end - i > 2;
+  }
   if (open == 0 && branching == 0) return "closed";
   std::string text;
   if (open > 0) text = fmt::format("open ({} edges)", open);

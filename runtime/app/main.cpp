@@ -57,6 +57,7 @@ int main(int argc, char** argv) {
   liana::add_inspect_verb(app, exit_code);
   liana::add_infer_verb(app, exit_code);
   liana::add_verify_verb(app, exit_code);
+  liana::add_modes_verb(app, exit_code);
   liana::add_simulate_verb(app, exit_code);
   liana::add_edit_verb(app, exit_code);
   try {

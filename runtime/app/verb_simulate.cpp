@@ -70,6 +70,7 @@ std::string report_json(const World& world, double total_seconds, double render_
   json["anchors"] = report.anchors;
   json["redone_steps"] = report.redone_steps;
   json["contact_passes"] = report.contact_passes;
+  json["reseated_joints"] = report.reseated_joints;
   json["lost_steps"] = report.lost_steps;
   json["seconds"] = {{"total", total_seconds},
                      {"physics", report.seconds.physics},
@@ -101,6 +102,8 @@ void print_summary(const World& world, double total_seconds, double render_secon
       fmt::print("note: {} air velocities were cut to twice the speed of sound\n", report.air->limited);
   }
   if (report.redone_steps > 0) fmt::print("note: {} steps were redone with finer substeps\n", report.redone_steps);
+  if (report.reseated_joints > 0)
+    fmt::print("note: {} joints were torn open and closed by hand\n", report.reseated_joints);
   if (report.lost_steps > 0) fmt::print("note: {} steps did not stay finite and were stopped\n", report.lost_steps);
   for (const std::string& note : world.notes()) fmt::print("note: {}\n", note);
 }

@@ -58,8 +58,9 @@ SphWindParameters read_air(const TomlTable& wind, const std::vector<TomlTable>& 
     if (!((air.high - air.low).minCoeff() >= 2 * air.spacing))
       table->fail("low", "must lie below 'high' by at least twice the spacing in every direction");
     if ((air.high - air.low).maxCoeff() > 1e4 * air.spacing)
-      table->fail("spacing", fmt::format("is finer than a ten thousandth of the domain: choose at least {:.3g} m",
-                                         1e-4 * (air.high - air.low).maxCoeff()));
+      table->fail("spacing",
+                  fmt::format("is finer than a ten thousandth of the domain: choose at least {:.3g} m",
+                              1e-4 * (air.high - air.low).maxCoeff()));
     table->refuse_unknown_keys();
   }
   for (size_t i = 0; i < emitters.size(); ++i)
@@ -97,7 +98,8 @@ SceneWind read_scene_wind(const TomlTable& table, uint64_t scene_seed) {
   if (!emitters.empty())
     wind.air = read_air(table, emitters, scene_seed);
   else if (table.has("air"))
-    table.fail("air", "needs an emitter", "[[wind.emitter]] center = [-2, 1, 0] direction = [1, 0, 0] speed = 5 radius = 0.5");
+    table.fail("air", "needs an emitter",
+               "[[wind.emitter]] center = [-2, 1, 0] direction = [1, 0, 0] speed = 5 radius = 0.5");
   table.refuse_unknown_keys();
   return wind;
 }

@@ -167,6 +167,7 @@ void World::step_inhabitant(size_t index) {
   report.max_penetration = std::max(report.max_penetration, done.contacts.max_penetration);
   report.contact_passes += static_cast<size_t>(done.passes - 1);
   report.redone_steps += done.step.redone > 0;
+  report.reseated_joints += static_cast<size_t>(done.step.reseated);
   report.lost_steps += !done.step.finite;
   report.seconds.collision += done.collision_seconds;
   report.seconds.physics += watch.seconds() - done.collision_seconds;
@@ -216,6 +217,7 @@ WorldReport World::report() const {
     total.max_penetration = std::max(total.max_penetration, own.max_penetration);
     total.redone_steps += own.redone_steps;
     total.contact_passes += own.contact_passes;
+    total.reseated_joints += own.reseated_joints;
     total.lost_steps += own.lost_steps;
     total.seconds.growth += own.seconds.growth;
     total.seconds.collision += own.seconds.collision;

@@ -7,10 +7,10 @@
 
 #include "runtime/growth/climber.h"
 #include "runtime/scene/scene_file.h"
+#include "runtime/scene/world_wind.h"
 #include "runtime/sim/collision/contact_step.h"
 #include "runtime/view/camera.h"
 #include "runtime/view/plant_drawing.h"
-#include "runtime/scene/world_wind.h"
 #include "runtime/view/simulation_view.h"
 
 namespace liana {
@@ -24,11 +24,12 @@ struct PhaseSeconds {
 /// What happened since the start.
 struct WorldReport {
   size_t steps = 0, particles = 0, anchors = 0;
-  double max_penetration = 0;  ///< m, deepest that any particle ever was in an obstacle or the ground
-  size_t redone_steps = 0;     ///< steps that the solver took again with finer substeps
-  size_t contact_passes = 0;     ///< taken again because a contact showed only at the step's end
+  double max_penetration = 0;        ///< m, deepest that any particle ever was in an obstacle or the ground
+  size_t redone_steps = 0;           ///< steps that the solver took again with finer substeps
+  size_t contact_passes = 0;         ///< taken again because a contact showed only at the step's end
   std::optional<SphWindReport> air;  ///< absent without emitters
-  size_t lost_steps = 0;       ///< steps that did not stay finite and were stopped
+  size_t reseated_joints = 0;        ///< closed by hand where the finest substeps did not hold them
+  size_t lost_steps = 0;             ///< steps that did not stay finite and were stopped
   PhaseSeconds seconds;
 };
 

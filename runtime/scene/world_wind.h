@@ -12,12 +12,14 @@ namespace liana {
 class WorldWind {
  public:
   /// Solids must outlive it. Throws Error{Input}.
-  WorldWind(const Scene& scene, const std::vector<const SdfObstacle*>& solids, double ground_height, unsigned threads);
+  WorldWind(const Scene& scene, const std::vector<const SdfObstacle*>& solids, double ground_height,
+            unsigned threads);
 
   bool has_air() const { return air_ != nullptr; }
   /// Before the plants' steps, with all of them: moves the air and finds what it does to them.
   void advance(std::span<const PlantInWind> plants, double time, double dt);
-  /// Appends the wind's dashpots of one plant and adds the air's pressure to its wrenches (left empty without air).
+  /// Appends the wind's dashpots of one plant and adds the air's pressure to its wrenches (left empty without
+  /// air).
   void add_to(size_t index, const Plant& plant, double time, std::vector<WorldSpring>& springs,
               std::vector<Wrench>& wrenches) const;
   /// After the plants' steps: takes from the air what they got.
@@ -27,9 +29,9 @@ class WorldWind {
   double seconds() const { return seconds_; }  ///< spent in advance() and react() so far
 
  private:
-  std::unique_ptr<WindField> open_;        // null without a wind everywhere
+  std::unique_ptr<WindField> open_;  // null without a wind everywhere
   std::unique_ptr<ShelteredWind> sheltered_;
-  std::unique_ptr<SphWind> air_;           // null without emitters
+  std::unique_ptr<SphWind> air_;  // null without emitters
   std::unique_ptr<PlantCoupling> coupling_;
   double seconds_ = 0;
 };

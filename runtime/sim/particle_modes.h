@@ -7,8 +7,8 @@
 
 #include <vector>
 
-#include "runtime/sim/plant.h"
 #include "runtime/sim/joints.h"
+#include "runtime/sim/plant.h"
 
 namespace liana {
 

@@ -87,9 +87,13 @@ void add_spring(const WorldSpring& spring, double position_rate, double velocity
   const Vec3 slip = Row(pose + 8) + Row(pose + 11).cross(lever) - spring.target_velocity;
   const Vec3 force = -spring.stiffness * (Row(pose) + lever - spring.target) - spring.damping * slip;
   const Mat3 S = position_rate * spring.stiffness + velocity_rate * spring.damping;
-  const Mat3 L = skew(lever), Q = L * S, R = Q * L.transpose();  // T(r)ᵀ [S 0; 0 0] T(r)
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column <= row; ++column) *block++ += S(row, column);
+  if (spring.on_particle.isZero(0)) {  // wind, mostly: at the centre it turns nothing
+    for (int row = 0; row < 3; ++row) block[15 + row] += force[row];
+    return;
+  }
+  const Mat3 L = skew(lever), Q = L * S, R = Q * L.transpose();  // T(r)ᵀ [S 0; 0 0] T(r)
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) *block++ += Q(row, column);
     for (int column = 0; column <= row; ++column) *block++ += R(row, column);

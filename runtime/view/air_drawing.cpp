@@ -12,7 +12,8 @@ void add_air(const SphAir& air, DrawScene& scene) {
   for (size_t i = 0; i < air.size(); ++i) {
     const Vec3 place = air.position(i), velocity = air.velocity(i);
     const double share = velocity.norm() / top;
-    scene.streaks.push_back({place - kWay * velocity, place, slow + share * (fast - slow), 0.35 + 0.4 * share});
+    scene.streaks.push_back(
+        {place - kWay * velocity, place, slow + share * (fast - slow), 0.35 + 0.4 * share});
   }
 }
 

@@ -6,8 +6,8 @@
 
 namespace liana {
 
-// Glossary: η = G (x_j − x_b), G = diag(1/(h + a), 1/(h + b), 1/(h + c)) Rᵀ [Owen 1997], so that the support reaches h
-// beyond the body's surface; W(x) = |G| W₁(|η|) with W₁ of unit support, ∇W = |G| Gᵀ ∇W₁(η).
+// Glossary: η = G (x_j − x_b), G = diag(1/(h + a), 1/(h + b), 1/(h + c)) Rᵀ [Owen 1997], so that the support
+// reaches h beyond the body's surface; W(x) = |G| W₁(|η|) with W₁ of unit support, ∇W = |G| Gᵀ ∇W₁(η).
 void SphAir::find_body_pairs(std::span<const AirBody> bodies) {
   body_pairs_.clear();
   const double h = support_;
@@ -35,8 +35,8 @@ void SphAir::find_body_pairs(std::span<const AirBody> bodies) {
   }
 }
 
-// Müller's pressure force with the body's pressure mirrored from the air: −m V_b p_j/ρ_j ∇W on the air, the opposite on
-// the body.
+// Müller's pressure force with the body's pressure mirrored from the air: −m V_b p_j/ρ_j ∇W on the air, the
+// opposite on the body.
 void SphAir::push_bodies(std::span<AirBody> bodies, double dt) {
   for (const BodyPair& pair : body_pairs_) {
     const AirState& air = state_[pair.particle];

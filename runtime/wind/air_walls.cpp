@@ -23,7 +23,8 @@ AirWalls::AirWalls(const Vec3& low, const Vec3& high, double spacing, double rea
           for (const SdfObstacle* obstacle : obstacles) {
             // Beyond the band the value is a bound: ask exactly only where it could matter.
             double d = obstacle->distance(x);
-            if (d < std::min(reach, nearest) && std::abs(d) >= obstacle->band()) d = obstacle->closest_point(x).distance;
+            if (d < std::min(reach, nearest) && std::abs(d) >= obstacle->band())
+              d = obstacle->closest_point(x).distance;
             nearest = std::min(nearest, d);
           }
           values_[row * size_[0] + i] = static_cast<float>(std::clamp(nearest, -reach, reach));

@@ -10,14 +10,15 @@
 namespace liana {
 
 /// Distances beyond `reach` are not told apart. The grid is as coarse as the air itself, so that a read costs
-/// nanoseconds; a solid thinner than a grid cell still stops the air (it has a distance of zero in its middle, and air
-/// turns back well before).
+/// nanoseconds; a solid thinner than a grid cell still stops the air (it has a distance of zero in its
+/// middle, and air turns back well before).
 class AirWalls {
  public:
   AirWalls() = default;
   /// Domain and spacing in m. Asks the obstacles once; they must stand still.
   AirWalls(const Vec3& low, const Vec3& high, double spacing, double reach,
-           std::span<const SdfObstacle* const> obstacles, std::optional<double> ground_height, unsigned threads);
+           std::span<const SdfObstacle* const> obstacles, std::optional<double> ground_height,
+           unsigned threads);
 
   struct Sample {
     float distance;  ///< m, negative inside

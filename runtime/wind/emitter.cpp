@@ -9,14 +9,15 @@ namespace liana {
 namespace {
 
 AmbientParameters eddies_of(const EmitterParameters& p, uint64_t seed) {
-  const bool sound = p.center.allFinite() && p.direction.allFinite() && p.direction.norm() > 1e-9 && p.speed > 0 &&
-                     p.speed <= 100 && p.turbulence >= 0 && p.turbulence <= 1 && p.gust >= 0 && p.gust <= 1 &&
-                     p.gust_period > 0 && std::isfinite(p.gust_period) &&
-                     (p.shape == EmitterParameters::Shape::Disc ? p.radius > 0 && p.radius < 1e3
-                                                                : p.width > 0 && p.height > 0 &&
-                                                                      p.width + p.height < 1e3);
+  const bool sound =
+      p.center.allFinite() && p.direction.allFinite() && p.direction.norm() > 1e-9 && p.speed > 0 &&
+      p.speed <= 100 && p.turbulence >= 0 && p.turbulence <= 1 && p.gust >= 0 && p.gust <= 1 &&
+      p.gust_period > 0 && std::isfinite(p.gust_period) &&
+      (p.shape == EmitterParameters::Shape::Disc ? p.radius > 0 && p.radius < 1e3
+                                                 : p.width > 0 && p.height > 0 && p.width + p.height < 1e3);
   if (!sound)
-    throw Error(Error::Kind::Input, "a wind emitter's speed, size, direction, turbulence or gusts are out of range",
+    throw Error(Error::Kind::Input,
+                "a wind emitter's speed, size, direction, turbulence or gusts are out of range",
                 "a speed above 0 and up to 100 m/s, a positive size, turbulence and gust between 0 and 1");
   AmbientParameters eddies;
   eddies.mean = p.speed * p.direction.normalized();
@@ -51,21 +52,33 @@ double Emitter::gust_at(double time) const {
   return std::max(0.0, 1 + parameters_.gust * std::sqrt(2.0 / 3) * sum);
 }
 
+bool Emitter::contains(double across, double up) const {
+  const EmitterParameters& p = parameters_;
+  return p.shape == EmitterParameters::Shape::Disc
+             ? across * across + up * up <= p.radius * p.radius
+             : std::abs(across) <= p.width / 2 && std::abs(up) <= p.height / 2;
+}
+
 size_t Emitter::emit(SphAir& air, double time, double dt) {
   const double s = air.options().spacing, gust = gust_at(time);
   const bool disc = parameters_.shape == EmitterParameters::Shape::Disc;
   const double half_width = disc ? parameters_.radius : parameters_.width / 2,
                half_height = disc ? parameters_.radius : parameters_.height / 2;
+  const double flow = parameters_.speed * gust;
+  for (size_t i = 0; i < air.size(); ++i) {
+    const Vec3 place = air.position(i) - parameters_.center;
+    const double ahead = place.dot(axes_.col(0));
+    if (ahead < 0 || ahead >= s || !contains(place.dot(axes_.col(1)), place.dot(axes_.col(2)))) continue;
+    air.push(i, axes_.col(0) * std::max(0.0, flow - air.velocity(i).dot(axes_.col(0))));
+  }
   size_t refused = 0;
-  for (due_ += parameters_.speed * gust * dt; due_ >= s; due_ -= s, ++layers_) {
+  for (due_ += flow * dt; due_ >= s; due_ -= s, ++layers_) {
     const double shift = layers_ % 2 == 0 ? 0 : s / 2;
     const auto columns = static_cast<int>(half_width / s) + 1, rows = static_cast<int>(half_height / s) + 1;
     for (int row = -rows; row <= rows; ++row)
       for (int column = -columns; column <= columns; ++column) {
         const double u = column * s + shift, v = row * s + shift;
-        const bool inside = disc ? u * u + v * v <= half_width * half_width
-                                 : std::abs(u) <= half_width && std::abs(v) <= half_height;
-        if (!inside) continue;
+        if (!contains(u, v)) continue;
         const Vec3 place = parameters_.center + axes_ * Vec3(due_ - s, u, v);
         refused += !air.add(place, gust * eddies_.velocity(place, time));
       }

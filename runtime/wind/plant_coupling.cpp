@@ -8,16 +8,16 @@
 namespace liana {
 namespace {
 
-constexpr size_t kBlock = 256;         // particles of a task
-constexpr double kThick = 0.01;        // of an air particle's volume: thinner bodies are not felt as volumes
+constexpr size_t kBlock = 256;   // particles of a task
+constexpr double kThick = 0.01;  // of an air particle's volume: thinner bodies are not felt as volumes
 constexpr double kConeFactor = 3 / kPi;  // of 1 - |η|, for a unit integral over the unit ball
 
 Vec3 half_axes(const Particle& particle) {
   return {particle.half_width, particle.half_length, particle.half_thickness};
 }
 
-/// The mean of the velocities at the ends of a step's parts, less what the dashpot's mixing by α_f adds: what makes
-/// factor * (air - this) * dt the dashpot's impulse. Exact when the scheme takes the step in one part.
+/// The mean of the velocities at the ends of a step's parts, less what the dashpot's mixing by α_f adds: what
+/// makes factor * (air - this) * dt the dashpot's impulse. Exact when the scheme takes the step in one part.
 Vec3 mean_velocity(const TimeScheme& scheme, const Vec3& before, const Vec3& after) {
   const double n = scheme.substeps, rho = scheme.rho_infinity;
   const double alpha_over = rho;  // α_f / (1 - α_f), with α_f = ρ∞ / (1 + ρ∞)
@@ -59,7 +59,8 @@ void PlantCoupling::make_blocks(std::span<const PlantInWind> plants) {
   first_block_.push_back(count);
 }
 
-void PlantCoupling::find(std::span<const PlantInWind> plants, const WindField* ambient, double time, double dt) {
+void PlantCoupling::find(std::span<const PlantInWind> plants, const WindField* ambient, double time,
+                         double dt) {
   dt_ = dt;
   make_blocks(plants);
   const size_t count = first_block_.back(), n = air_.size();
@@ -117,8 +118,8 @@ void PlantCoupling::find_pairs(Block& block, const PlantInWind& in, const WindFi
       air_.for_ranges(place - box, place + box, [&](uint32_t begin, uint32_t end) {
         const size_t room = used + (end - begin) + 16;
         if (block.air.size() < room) block.air.resize(2 * room), block.weight.resize(2 * room);
-        used = air_.passes().ellipsoid(begin, end, air_.xs(), air_.ys(), air_.zs(), centre, rows, block.air.data(),
-                                      block.weight.data(), used);
+        used = air_.passes().ellipsoid(begin, end, air_.xs(), air_.ys(), air_.zs(), centre, rows,
+                                       block.air.data(), block.weight.data(), used);
       });
       for (uint32_t k = target.first; k < used; ++k) {
         const AirState& a = air_.states()[block.air[k]];
@@ -135,8 +136,10 @@ void PlantCoupling::find_pairs(Block& block, const PlantInWind& in, const WindFi
     target.still = ambient ? (1 - cover) * drag : 0;
     const auto scale = static_cast<float>(sum > 0 ? cover * drag / sum : 0);
     for (uint32_t k = target.first; k < used; ++k) block.weight[k] *= scale;
-    if (drag > 0) block.targets.push_back(target);
-    else used = target.first;
+    if (drag > 0)
+      block.targets.push_back(target);
+    else
+      used = target.first;
   }
 }
 
@@ -177,7 +180,8 @@ void PlantCoupling::react(std::span<const PlantInWind> plants) {
       const Vec3 after = plant.motion[target.particle.index()].velocity;
       const Vec3 slip = target.ambient - mean_velocity(plant.scheme, target.velocity, after);
       exchanged_ += dt_ * (target.drive + target.own * slip);
-      const float x = static_cast<float>(slip.x()), y = static_cast<float>(slip.y()), z = static_cast<float>(slip.z());
+      const float x = static_cast<float>(slip.x()), y = static_cast<float>(slip.y()),
+                  z = static_cast<float>(slip.z());
       for (uint32_t k = target.first; k < target.last; ++k) {
         const AirState& a = air_.states()[block.air[k]];
         float* change = &change_[4 * block.air[k]];

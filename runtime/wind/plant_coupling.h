@@ -1,16 +1,18 @@
 // Plants and air particles move each other: what the plants gain, the air loses.
 //
-// Between a full-grown particle b of a plant and an air particle j near it acts a viscosity force of [Müller et al.
-// 2003]'s form, μ V_b V_j (v_j − v_b) ∇²W(η), with η = G (x_j − x_b) of Eq. 13. The air's true viscosity acts in a layer
-// far thinner than the particles' spacing; so μ is what gives the body's known drag in sum:
+// Between a full-grown particle b of a plant and an air particle j near it acts a viscosity force of [Müller
+// et al. 2003]'s form, μ V_b V_j (v_j − v_b) ∇²W(η), with η = G (x_j − x_b) of Eq. 13. The air's true
+// viscosity acts in a layer far thinner than the particles' spacing; so μ is what gives the body's known drag
+// in sum:
 //
 //   w_bj  V_j (1 − |η|), of unit sum       c_b  how much of the kernel is filled with air, at most 1
 //   D_b   ½ ρ C_d A |u − v_b|, the drag on the projected area    k_bj = c_b D_b w_bj / (1 + l_j)
-//   l_j   Σ_b c_b D_b w_bj Δt / m: the share of its motion that air particle j would lose in a step. The divisor
+//   l_j   Σ_b c_b D_b w_bj Δt / m: the share of its motion that air particle j would lose in a step. The
+//   divisor
 //         is an implicit step of the air's, so that dense foliage stops the air and never turns it round.
 //
-// With an ambient wind U the particle is in air of velocity U + v_j where there are air particles, and of U where there
-// are none.
+// With an ambient wind U the particle is in air of velocity U + v_j where there are air particles, and of U
+// where there are none.
 #pragma once
 
 #include <span>
@@ -28,13 +30,15 @@ struct PlantInWind {
   std::span<const uint8_t> growing;
 };
 
-/// Each step: set_bodies(), SphWind::step(), find(), dashpots() and wrenches() for every plant, the plants' steps,
-/// react(). Allocates nothing once it has seen the most pairs. Deterministic, the same with any number of threads.
+/// Each step: set_bodies(), SphWind::step(), find(), dashpots() and wrenches() for every plant, the plants'
+/// steps, react(). Allocates nothing once it has seen the most pairs. Deterministic, the same with any number
+/// of threads.
 class PlantCoupling {
  public:
   explicit PlantCoupling(SphAir& air, const DragOptions& drag = {}) : air_(air), drag_(drag) {}
 
-  /// The plants' particles that are so thick that their volume matters to the air: give them to SphWind::step().
+  /// The plants' particles that are so thick that their volume matters to the air: give them to
+  /// SphWind::step().
   std::span<AirBody> set_bodies(std::span<const PlantInWind> plants);
   /// Pairs and their strength, for a step of dt (s) from the plants' present state. ambient: null for none.
   void find(std::span<const PlantInWind> plants, const WindField* ambient, double time, double dt);

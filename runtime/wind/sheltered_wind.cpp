@@ -20,6 +20,16 @@ void ShelteredWind::slow(Vec3& wind, double distance, const Vec3& normal) const 
 
 Vec3 ShelteredWind::velocity(const Vec3& position, double time) const {
   Vec3 wind = open_.velocity(position, time);
+  shelter(wind, position);
+  return wind;
+}
+
+void ShelteredWind::velocities(std::span<const Vec3> positions, double time, std::span<Vec3> out) const {
+  open_.velocities(positions, time, out);
+  for (size_t i = 0; i < positions.size(); ++i) shelter(out[i], positions[i]);
+}
+
+void ShelteredWind::shelter(Vec3& wind, const Vec3& position) const {
   for (const SdfObstacle* solid : solids_) {
     const SdfSample field = solid->sample(position);
     if (field.distance >= parameters_.layer) continue;
@@ -32,7 +42,6 @@ Vec3 ShelteredWind::velocity(const Vec3& position, double time) const {
     }
   }
   if (ground_height_) slow(wind, position.y() - *ground_height_, Vec3::UnitY());
-  return wind;
 }
 
 }  // namespace liana

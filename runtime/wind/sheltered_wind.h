@@ -23,8 +23,10 @@ class ShelteredWind : public WindField {
   ShelteredWind(const WindField& open, std::vector<const SdfObstacle*> solids,
                 std::optional<double> ground_height, const ShelterParameters& parameters = {});
   Vec3 velocity(const Vec3& position, double time) const override;
+  void velocities(std::span<const Vec3> positions, double time, std::span<Vec3> out) const override;
 
  private:
+  void shelter(Vec3& wind, const Vec3& position) const;
   void slow(Vec3& wind, double distance, const Vec3& normal) const;
 
   const WindField& open_;

@@ -1,5 +1,5 @@
-// Eight floats at once in plain GCC/Clang vector types: one meaning whatever the processor has, since nothing is
-// fused or approximated. Functions that use it are compiled twice (see sph_pass_body.h).
+// Eight floats at once in plain GCC/Clang vector types: one meaning whatever the processor has, since nothing
+// is fused or approximated. Functions that use it are compiled twice (see sph_pass_body.h).
 #pragma once
 
 #include <cstdint>

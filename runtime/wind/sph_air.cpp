@@ -12,12 +12,13 @@ namespace liana {
 namespace {
 
 constexpr float kFar = 1e18f;  // m: where padding is, out of reach of everything and its square still a float
-constexpr double kCourant = 0.6;        // of c dt / h; air in a box stays calm up to 1.0
-constexpr double kViscous = 1.0 / 15;   // of ν dt / h²: Σ V ∇²W = 15/h², explicit Euler
-constexpr double kWallGap = 0.25;       // of the spacing: nearer to a solid no particle comes
+constexpr double kCourant = 0.6;       // of c dt / h; air in a box stays calm up to 1.0
+constexpr double kViscous = 1.0 / 15;  // of ν dt / h²: Σ V ∇²W = 15/h², explicit Euler
+constexpr double kWallGap = 0.25;      // of the spacing: nearer to a solid no particle comes
 constexpr int kTasksPerWorker = 4;
 
-/// Σ W h-independent: the density of a cubic lattice of unit spacing and mass, by particles nearer than two spacings.
+/// Σ W h-independent: the density of a cubic lattice of unit spacing and mass, by particles nearer than two
+/// spacings.
 double lattice_density() {
   double sum = 0;
   for (int x = -1; x <= 1; ++x)
@@ -38,8 +39,9 @@ SphAir::SphAir(const AirOptions& o, const AirWalls* walls)
                      std::isfinite(o.spacing + o.rest_density + o.sound_speed + o.viscosity) &&
                      extent.maxCoeff() < 1e5 * o.spacing;
   if (!sound)
-    throw Error(Error::Kind::Input, "the air's domain, spacing, density, speed of sound or viscosity is out of range",
-                "positive finite numbers, a domain with low < high in every axis and less than 100000 spacings long");
+    throw Error(
+        Error::Kind::Input, "the air's domain, spacing, density, speed of sound or viscosity is out of range",
+        "positive finite numbers, a domain with low < high in every axis and less than 100000 spacings long");
   support_ = 2 * o.spacing;
   mass_ = o.rest_density * std::pow(o.spacing, 3) / lattice_density();
   longest_step_ = kCourant * support_ / o.sound_speed;
@@ -82,7 +84,8 @@ SphAir::SphAir(const AirOptions& o, const AirWalls* walls)
 }
 
 int SphAir::cell_along(float x, int axis) const {
-  return 1 + static_cast<int>(std::clamp(std::floor(x / cell_size_), -1.0f, static_cast<float>(cells_[axis] - 2)));
+  return 1 + static_cast<int>(
+                 std::clamp(std::floor(x / cell_size_), -1.0f, static_cast<float>(cells_[axis] - 2)));
 }
 
 bool SphAir::add(const Vec3& position, const Vec3& velocity) {
@@ -91,16 +94,19 @@ bool SphAir::add(const Vec3& position, const Vec3& velocity) {
       !(position.array() < options_.high.array()).all())
     return false;
   const Eigen::Vector3f x = place.cast<float>(), v = velocity.cast<float>();
-  if (walls_ && !walls_->empty() && walls_->sample(x.x(), x.y(), x.z()).distance < kWallGap * options_.spacing)
+  if (walls_ && !walls_->empty() &&
+      walls_->sample(x.x(), x.y(), x.z()).distance < kWallGap * options_.spacing)
     return false;
   density_[count_] = static_cast<float>(options_.rest_density);
-  state_[count_++] = {x.x(), x.y(), x.z(), 0, v.x(), v.y(), v.z(), static_cast<float>(1 / options_.rest_density)};
+  state_[count_++] = {x.x(), x.y(), x.z(), 0,
+                      v.x(), v.y(), v.z(), static_cast<float>(1 / options_.rest_density)};
   return true;
 }
 
 void SphAir::push(size_t i, const Vec3& change) {
   AirState& a = state_[i];
-  a.vx += static_cast<float>(change.x()), a.vy += static_cast<float>(change.y()), a.vz += static_cast<float>(change.z());
+  a.vx += static_cast<float>(change.x()), a.vy += static_cast<float>(change.y()),
+      a.vz += static_cast<float>(change.z());
 }
 
 Vec3 SphAir::momentum() const {
@@ -212,7 +218,8 @@ void SphAir::finish_density(uint32_t begin, uint32_t end, bool near_wall) {
     wall_[i].distance = h;
     if (near_wall) {
       wall_[i] = walls_->sample(a.x, a.y, a.z);
-      if (wall_[i].distance < h) rho += rest * static_cast<float>(wall_integrals(wall_[i].distance / h).density);
+      if (wall_[i].distance < h)
+        rho += rest * static_cast<float>(wall_integrals(wall_[i].distance / h).density);
     }
     density_[i] = rho;
     a.pressure = stiffness * std::max(rho - rest, 0.0f);
@@ -232,7 +239,8 @@ void SphAir::move(Chunk& chunk, float dt) {
     if (wall.distance < h) {
       const WallIntegrals integrals = wall_integrals(wall.distance / h);
       push = dt * a.pressure * a.specific_volume * static_cast<float>(integrals.pressure) / h;
-      const float rub = dt * constants_.viscosity * a.specific_volume * static_cast<float>(integrals.viscosity) / (h * h);
+      const float rub =
+          dt * constants_.viscosity * a.specific_volume * static_cast<float>(integrals.viscosity) / (h * h);
       hold = 1 / (1 + rub);
     }
     a.vx = (a.vx + dt * (acceleration_[4 * i] + extra_acceleration_[4 * i])) * hold + push * wall.x;

@@ -4,8 +4,9 @@
 //   h  support radius of the kernels, 2 s           p   pressure, c² (ρ − ρ₀), never negative, Pa
 //   m  mass of a particle: a lattice of spacing s has the density ρ₀ exactly
 //
-// The air is weakly compressible: c is not that of real air but a few times the fastest wind, so that densities
-// differ by some per cent and a step may be long. Pressure does not pull: where no particles are, still air is meant.
+// The air is weakly compressible: c is not that of real air but a few times the fastest wind, so that
+// densities differ by some per cent and a step may be long. Pressure does not pull: where no particles are,
+// still air is meant.
 #pragma once
 
 #include <memory>
@@ -19,21 +20,22 @@
 namespace liana {
 
 struct AirOptions {
-  Vec3 low = Vec3::Constant(-1), high = Vec3::Constant(1);  ///< domain; particles that leave it are taken out, m
-  double spacing = 0.15;                                    ///< s, m
-  double rest_density = 1.3;                                ///< kg/m³; [Haedrich17] §5.3: 1.3-1.4
-  double sound_speed = 15;                                  ///< c, m/s
-  double viscosity = 0.02;                                  ///< μ, Pa·s: the air's own plus unresolved eddies'
-  size_t capacity = 10000;                                  ///< particles at most
-  unsigned threads = 1;                                     ///< 0: one per core; the result does not depend on it
-  bool portable = false;                                    ///< no AVX2, for comparison: the same result, slower
+  Vec3 low = Vec3::Constant(-1),
+       high = Vec3::Constant(1);  ///< domain; particles that leave it are taken out, m
+  double spacing = 0.15;          ///< s, m
+  double rest_density = 1.3;      ///< kg/m³; [Haedrich17] §5.3: 1.3-1.4
+  double sound_speed = 15;        ///< c, m/s
+  double viscosity = 0.02;        ///< μ, Pa·s: the air's own plus unresolved eddies'
+  size_t capacity = 10000;        ///< particles at most
+  unsigned threads = 1;           ///< 0: one per core; the result does not depend on it
+  bool portable = false;          ///< no AVX2, for comparison: the same result, slower
 };
 
 /// A solid ellipsoid in the air whose volume displaces it: a thick piece of a plant.
 struct AirBody {
-  Vec3 position;         ///< m
+  Vec3 position;  ///< m
   Quat orientation;
-  Vec3 half_axes;        ///< m, along its own axes
+  Vec3 half_axes;               ///< m, along its own axes
   Vec3 impulse = Vec3::Zero();  ///< N·s, what the air's pressure gave it so far: added to by advance()
 };
 
@@ -49,24 +51,25 @@ class SphAir {
 
   /// Longest stable step, s.
   double longest_step() const { return longest_step_; }
-  /// One step of dt <= longest_step(), s. Particles change their order; bodies stand still and gather impulses.
+  /// One step of dt <= longest_step(), s. Particles change their order; bodies stand still and gather
+  /// impulses.
   void step(double dt, std::span<AirBody> bodies = {});
   /// Brings cells and order up to date after add(): step() does so itself. Needed before the queries below.
   void sort();
 
   Vec3 position(size_t i) const { return options_.low + Vec3(state_[i].x, state_[i].y, state_[i].z); }
   Vec3 velocity(size_t i) const { return Vec3(state_[i].vx, state_[i].vy, state_[i].vz); }
-  void push(size_t i, const Vec3& change);        ///< adds to a velocity, m/s
+  void push(size_t i, const Vec3& change);                ///< adds to a velocity, m/s
   double density(size_t i) const { return density_[i]; }  ///< kg/m³, of the last step
-  double particle_mass() const { return mass_; }  ///< kg
-  double support() const { return support_; }     ///< h, m
-  Vec3 momentum() const;                          ///< kg·m/s, summed in double
-  size_t limited() const { return limited_; }     ///< velocities cut to 2 c so far; 0 in normal motion
-  size_t left() const { return left_; }           ///< particles that left the domain so far
+  double particle_mass() const { return mass_; }          ///< kg
+  double support() const { return support_; }             ///< h, m
+  Vec3 momentum() const;                                  ///< kg·m/s, summed in double
+  size_t limited() const { return limited_; }  ///< velocities cut to 2 c so far; 0 in normal motion
+  size_t left() const { return left_; }        ///< particles that left the domain so far
   const AirOptions& options() const { return options_; }
 
-  /// The particles in the cells that a box touches: calls visit(first, last) for ranges of indices. The box (m) is
-  /// relative to the domain's low corner.
+  /// The particles in the cells that a box touches: calls visit(first, last) for ranges of indices. The box
+  /// (m) is relative to the domain's low corner.
   template <class Visit>
   void for_ranges(const Eigen::Vector3f& low, const Eigen::Vector3f& high, const Visit& visit) const;
   const SphPasses& passes() const { return passes_; }

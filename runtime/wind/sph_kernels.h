@@ -1,8 +1,9 @@
-// The smoothing kernels of [Müller, Charypar, Gross 2003], and what a wall of still air at rest density adds to
-// them.
+// The smoothing kernels of [Müller, Charypar, Gross 2003], and what a wall of still air at rest density adds
+// to them.
 //
-//   h     support radius, m                     W_poly6 = 315/(64π h⁹) (h²−r²)³        densities (their Eq. 20)
-//   d     distance from a plane wall, m         ∇W_spiky = −45/(π h⁶) (h−r)² x/r        pressure    (Eq. 21)
+//   h     support radius, m                     W_poly6 = 315/(64π h⁹) (h²−r²)³        densities (their Eq.
+//   20) d     distance from a plane wall, m         ∇W_spiky = −45/(π h⁶) (h−r)² x/r        pressure    (Eq.
+//   21)
 //                                               ∇²W_visc = 45/(π h⁶) (h−r)              viscosity   (Eq. 22)
 #pragma once
 
@@ -12,11 +13,15 @@
 
 namespace liana {
 
-inline double poly6_factor(double h) { return 315 / (64 * kPi * std::pow(h, 9)); }
-inline double spiky_factor(double h) { return 45 / (kPi * std::pow(h, 6)); }
+inline double poly6_factor(double h) {
+  return 315 / (64 * kPi * std::pow(h, 9));
+}
+inline double spiky_factor(double h) {
+  return 45 / (kPi * std::pow(h, 6));
+}
 
-/// Integrals of the three kernels over the half space beyond a plane at distance d = q h, 0 <= q; a wall counts as
-/// filled with air of rest density there, in closed form instead of by particles.
+/// Integrals of the three kernels over the half space beyond a plane at distance d = q h, 0 <= q; a wall
+/// counts as filled with air of rest density there, in closed form instead of by particles.
 struct WallIntegrals {
   double density;    ///< ∫ W_poly6, of the rest density: 1/2 at the wall, 0 from h on
   double pressure;   ///< |∫ ∇W_spiky| h

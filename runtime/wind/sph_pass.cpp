@@ -66,7 +66,8 @@ constexpr Compression compression() {
 }
 constexpr Compression kCompression = compression();
 
-__attribute__((target("avx2"), always_inline)) inline uint32_t append_positive(Float8 left, const int32_t* index,
+__attribute__((target("avx2"), always_inline)) inline uint32_t append_positive(Float8 left,
+                                                                               const int32_t* index,
                                                                                int32_t* list, uint32_t used) {
   const int mask = _mm256_movemask_ps(_mm256_cmp_ps(left, _mm256_setzero_ps(), _CMP_GT_OQ));
   const __m256i places = _mm256_load_si256(reinterpret_cast<const __m256i*>(kCompression.places[mask]));
@@ -75,9 +76,10 @@ __attribute__((target("avx2"), always_inline)) inline uint32_t append_positive(F
   return used + kCompression.count[mask];
 }
 
-__attribute__((target("avx2"), always_inline)) inline uint32_t append_positive(Float8 left, Float8 x, Float8 y,
-                                                                               Float8 z, Int8 index,
-                                                                               const Candidates& to, uint32_t n) {
+__attribute__((target("avx2"), always_inline)) inline uint32_t append_positive(Float8 left, Float8 x,
+                                                                               Float8 y, Float8 z, Int8 index,
+                                                                               const Candidates& to,
+                                                                               uint32_t n) {
   const int mask = _mm256_movemask_ps(_mm256_cmp_ps(left, _mm256_setzero_ps(), _CMP_GT_OQ));
   const __m256i places = _mm256_load_si256(reinterpret_cast<const __m256i*>(kCompression.places[mask]));
   _mm256_storeu_ps(to.x + n, _mm256_permutevar8x32_ps(x, places));
@@ -99,7 +101,9 @@ __attribute__((target("avx2"), always_inline)) inline uint32_t append_positive(F
   return used + kCompression.count[mask];
 }
 
-__attribute__((target("avx2"), always_inline)) inline Float8 square_root(Float8 a) { return _mm256_sqrt_ps(a); }
+__attribute__((target("avx2"), always_inline)) inline Float8 square_root(Float8 a) {
+  return _mm256_sqrt_ps(a);
+}
 
 }  // namespace
 }  // namespace avx2
@@ -124,7 +128,8 @@ __attribute__((target("avx2"), always_inline)) inline Float8 square_root(Float8 
 namespace liana {
 
 const SphPasses& sph_passes(bool portable) {
-  static constexpr SphPasses plain = {portable::gather, portable::density, portable::force, portable::ellipsoid, "portable"};
+  static constexpr SphPasses plain = {portable::gather, portable::density, portable::force,
+                                      portable::ellipsoid, "portable"};
 #if defined(__x86_64__)
   static constexpr SphPasses wide = {avx2::gather, avx2::density, avx2::force, avx2::ellipsoid, "AVX2"};
   if (!portable && __builtin_cpu_supports("avx2")) return wide;

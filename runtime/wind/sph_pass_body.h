@@ -1,13 +1,19 @@
-// The loops behind sph_pass.h, included once per instruction set with LIANA_TARGET and namespace LIANA_ISA defined.
-// No include guard, no includes and no inline function of other headers: what is compiled for a newer processor must
-// not leak out.
+// The loops behind sph_pass.h, included once per instruction set with LIANA_TARGET and namespace LIANA_ISA
+// defined. No include guard, no includes and no inline function of other headers: what is compiled for a
+// newer processor must not leak out.
 namespace liana::LIANA_ISA {
 
 #define LIANA_INLINE static inline __attribute__((always_inline)) LIANA_TARGET
 
-LIANA_INLINE Float8 spread(float a) { return Float8{a, a, a, a, a, a, a, a}; }
-LIANA_INLINE Float8 load(const float* p) { return *reinterpret_cast<const Float8Loose*>(p); }
-LIANA_INLINE Float8 positive(Float8 a) { return a > 0 ? a : Float8{}; }
+LIANA_INLINE Float8 spread(float a) {
+  return Float8{a, a, a, a, a, a, a, a};
+}
+LIANA_INLINE Float8 load(const float* p) {
+  return *reinterpret_cast<const Float8Loose*>(p);
+}
+LIANA_INLINE Float8 positive(Float8 a) {
+  return a > 0 ? a : Float8{};
+}
 
 // In an order of its own, the same for both instruction sets.
 LIANA_INLINE float sum(Float8 a) {
@@ -16,7 +22,8 @@ LIANA_INLINE float sum(Float8 a) {
 }
 
 LIANA_INLINE Float8 row(const float* low, const float* high) {
-  const Float4 l = *reinterpret_cast<const Float4Loose*>(low), h = *reinterpret_cast<const Float4Loose*>(high);
+  const Float4 l = *reinterpret_cast<const Float4Loose*>(low),
+               h = *reinterpret_cast<const Float4Loose*>(high);
   return __builtin_shufflevector(l, h, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
@@ -65,8 +72,9 @@ LIANA_TARGET static uint32_t gather(uint32_t begin, uint32_t end, const uint32_t
 }
 
 LIANA_TARGET static uint32_t density(uint32_t begin, uint32_t end, const Candidates& near, uint32_t count,
-                                     int32_t nobody, const AirConstants& k, const AirState* state, float* density,
-                                     uint32_t* list_begin, uint32_t* list_end, int32_t* list, uint32_t used) {
+                                     int32_t nobody, const AirConstants& k, const AirState* state,
+                                     float* density, uint32_t* list_begin, uint32_t* list_end, int32_t* list,
+                                     uint32_t used) {
   const Float8 h2 = spread(k.support * k.support);
   const float *xs = near.x, *ys = near.y, *zs = near.z;
   const int32_t* index = near.index;
@@ -125,9 +133,9 @@ LIANA_TARGET static void force(uint32_t begin, uint32_t end, const AirConstants&
   }
 }
 
-LIANA_TARGET static uint32_t ellipsoid(uint32_t begin, uint32_t end, const float* x, const float* y, const float* z,
-                                       const float (&centre)[3], const float (&G)[9], int32_t* index, float* depth,
-                                       uint32_t used) {
+LIANA_TARGET static uint32_t ellipsoid(uint32_t begin, uint32_t end, const float* x, const float* y,
+                                       const float* z, const float (&centre)[3], const float (&G)[9],
+                                       int32_t* index, float* depth, uint32_t used) {
   const Int8 lane = {0, 1, 2, 3, 4, 5, 6, 7};
   const Float8 x0 = spread(centre[0]), y0 = spread(centre[1]), z0 = spread(centre[2]), one = spread(1);
   for (uint32_t i = begin; i < end; i += 8) {

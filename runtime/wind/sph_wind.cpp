@@ -17,8 +17,10 @@ std::vector<Emitter> emitters_of(const SphWindParameters& p) {
 
 AirOptions air_of(const SphWindParameters& p, const std::vector<Emitter>& emitters) {
   if (emitters.empty())
-    throw Error(Error::Kind::Input, "a wind of air particles has no emitter", "add one: a disc or a box that blows");
-  if (!(p.sound_over_speed >= 1 && p.sound_over_speed <= 20 && p.viscosity_ratio >= 0 && p.viscosity_ratio <= 1))
+    throw Error(Error::Kind::Input, "a wind of air particles has no emitter",
+                "add one: a disc or a box that blows");
+  if (!(p.sound_over_speed >= 1 && p.sound_over_speed <= 20 && p.viscosity_ratio >= 0 &&
+        p.viscosity_ratio <= 1))
     throw Error(Error::Kind::Input, "the air's speed of sound or viscosity is out of range",
                 "sound_over_speed 1-20, viscosity_ratio 0-1");
   double top = 0;
@@ -40,7 +42,8 @@ AirOptions air_of(const SphWindParameters& p, const std::vector<Emitter>& emitte
 SphWind::SphWind(const SphWindParameters& p, std::span<const SdfObstacle* const> solids,
                  std::optional<double> ground_height)
     : emitters_(emitters_of(p)),
-      walls_(p.low, p.high, p.spacing / 2, 2 * p.spacing, solids, ground_height, p.threads),
+      // Beyond the support by a cell's diagonal, so that cells far from solids are known as such.
+      walls_(p.low, p.high, p.spacing / 2, 4 * p.spacing, solids, ground_height, p.threads),
       air_(air_of(p, emitters_), &walls_) {
   air_.sort();
 }
@@ -69,7 +72,8 @@ Vec3 SphWind::velocity(const Vec3& position, double) const {
   const double h = air_.support(), factor = poly6_factor(h) * air_.particle_mass();
   const Eigen::Vector3f x = (position - air_.options().low).cast<float>();
   const auto reach = Eigen::Vector3f::Constant(static_cast<float>(h));
-  if (((position - air_.options().low).array() < -h).any() || ((position - air_.options().high).array() > h).any())
+  if (((position - air_.options().low).array() < -h).any() ||
+      ((position - air_.options().high).array() > h).any())
     return Vec3::Zero();
   Vec3 sum = Vec3::Zero();
   double cover = 0;

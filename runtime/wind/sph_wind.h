@@ -9,15 +9,16 @@ namespace liana {
 
 struct SphWindParameters {
   Vec3 low = Vec3::Constant(-2), high = Vec3::Constant(2);  ///< domain, m
-  double spacing = 0.15;            ///< m between air particles
-  double air_density = 1.3;         ///< kg/m³
-  double sound_over_speed = 3;      ///< speed of sound over the emitters' top speed: 3 lets densities differ by ~5 %
-  double viscosity_ratio = 0.005;   ///< eddy viscosity over (density · speed of sound · support): just calm
+  double spacing = 0.15;                                    ///< m between air particles
+  double air_density = 1.3;                                 ///< kg/m³
+  double sound_over_speed =
+      3;  ///< speed of sound over the emitters' top speed: 3 lets densities differ by ~5 %
+  double viscosity_ratio = 0.005;  ///< eddy viscosity over (density · speed of sound · support): just calm
   size_t max_particles = 10000;
   std::vector<EmitterParameters> emitters;
   uint64_t seed = 1;
-  unsigned threads = 1;             ///< 0: one per core; the result does not depend on it
-  bool portable = false;            ///< as AirOptions::portable
+  unsigned threads = 1;   ///< 0: one per core; the result does not depend on it
+  bool portable = false;  ///< as AirOptions::portable
 };
 
 /// Counts since the start.

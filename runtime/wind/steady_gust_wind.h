@@ -1,8 +1,7 @@
 // A steady wind with gusts that travel with it.
 #pragma once
 
-#include <vector>
-
+#include "runtime/wind/wave_sum.h"
 #include "runtime/wind/wind_field.h"
 
 namespace liana {
@@ -27,16 +26,11 @@ class SteadyGustWind : public WindField {
   /// Throws Error{Input} for values that are not finite or out of range.
   explicit SteadyGustWind(const GustParameters& parameters = {});
   Vec3 velocity(const Vec3& position, double time) const override;
+  void velocities(std::span<const Vec3> positions, double time, std::span<Vec3> out) const override;
 
  private:
-  struct Wave {
-    Vec3 amplitude;  // m/s
-    Vec3 wave;       // rad/m
-    double omega;    // rad/s
-    double phase;    // rad
-  };
   Vec3 mean_;
-  std::vector<Wave> waves_;
+  WaveSum waves_;
 };
 
 }  // namespace liana

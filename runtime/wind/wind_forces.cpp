@@ -22,7 +22,8 @@ double drag_factor(const Plant& plant, ParticleId id, const Vec3& relative, cons
   const bool leaf = plant.branches[particle.branch.index()].kind == DomainKind::Leaf;
   if (leaf && speed > options.leaf_yield_speed)
     speed *= std::pow(speed / options.leaf_yield_speed, options.leaf_vogel_exponent);
-  return options.air_density / 2 * (leaf ? options.leaf_coefficient : options.stem_coefficient) * area * speed;
+  return options.air_density / 2 * (leaf ? options.leaf_coefficient : options.stem_coefficient) * area *
+         speed;
 }
 
 WorldSpring drag_dashpot(const Plant& plant, ParticleId particle, double factor, const Vec3& air) {

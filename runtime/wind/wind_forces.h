@@ -13,8 +13,9 @@ struct DragOptions {
   double stem_coefficient = 1.1;  ///< C_d of a cylinder across the flow
   double leaf_coefficient = 0.6;  ///< C_d of a flexible blade
   double leaf_yield_speed = 4;    ///< m/s, above which blades fold and roll up: reconfiguration
-  /// V of [Vogel 1989], "Drag and reconfiguration of broad leaves in high winds", J. Exp. Bot. 40: above the yield
-  /// speed drag grows as u^(2+V). Broad leaves and plants range from about -0.2 to -1.2 [de Langre 2008].
+  /// V of [Vogel 1989], "Drag and reconfiguration of broad leaves in high winds", J. Exp. Bot. 40: above the
+  /// yield speed drag grows as u^(2+V). Broad leaves and plants range from about -0.2 to -1.2 [de Langre
+  /// 2008].
   double leaf_vogel_exponent = -1;
 };
 

@@ -10,8 +10,8 @@
 
 namespace liana {
 
-/// run() calls the body once on every worker, worker 0 being the caller. Inside, wait() lets none go on before all
-/// have come. Allocates nothing after its making. The body must not throw.
+/// run() calls the body once on every worker, worker 0 being the caller. Inside, wait() lets none go on
+/// before all have come. Allocates nothing after its making. The body must not throw.
 class WorkerTeam {
  public:
   /// 0: one per core.

@@ -1,4 +1,5 @@
 // The program itself: exit codes, messages, and what is left behind.
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -6,6 +7,7 @@
 #include <filesystem>
 #include <string>
 
+#include "materials/bake/bake_file.h"
 #include "mesher/base/files.h"
 #include "mesher/io/plant_file.h"
 #include "tests/support/scratch_folder.h"
@@ -88,8 +90,8 @@ TEST_F(CommandLine, BakesAndInspectsWhatItBaked) {
   EXPECT_TRUE(says(baked, "seconds: read"));
   EXPECT_EQ(baked.text.find('\033'), std::string::npos);  // nobody watches
   for (const auto& [file, part] :
-       {std::pair(output, "a bake (version 1)"), std::pair(report, "report of liana bake"),
-        std::pair(plant_, "13 domains")}) {
+       {std::pair(output, fmt::format("a bake (version {})", kBakeVersion)), std::pair(report, std::string("report of liana bake")),
+        std::pair(plant_, std::string("13 domains"))}) {
     const Outcome inspected = shell("\"$L\" inspect --domains " + quoted(file));
     EXPECT_EQ(inspected.code, 0);
     EXPECT_TRUE(says(inspected, part));
@@ -145,11 +147,12 @@ TEST_F(CommandLine, PartialBakeIsThreeAndStrictIsOne) {
 }
 
 TEST_F(CommandLine, CtrlCLeavesNoFile) {
-  // Many copies of the plant, so that it is still at work when the signal comes.
+  // Many plants of different proportions, so that it is still at work when the signal comes.
   SegmentedPlant plant = make_small_plant(), many;
   for (int copy = 0; copy < 150; ++copy)
     for (const Domain& domain : plant.domains) {
       many.domains.push_back(domain);
+      for (Vec3& p : many.domains.back().surface.positions) p.y() *= 1 + 0.01 * copy;
       if (!domain.parent.valid()) continue;
       many.domains.back().parent = DomainId(domain.parent.index() + plant.domains.size() * copy);
     }

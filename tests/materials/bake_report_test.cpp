@@ -34,7 +34,7 @@ TEST(BakeReport, HasTheStableKeys) {
   const auto report = nlohmann::json::parse(bake_report(sample()));
   for (const char* key : {"plant", "species", "seconds", "domains"}) EXPECT_TRUE(report.contains(key)) << key;
   EXPECT_EQ(keys(report["seconds"]),
-            (std::set<std::string>{"read", "surface", "tets", "modal", "laws", "total"}));
+            (std::set<std::string>{"read", "cache", "surface", "tets", "modal", "laws", "write", "total"}));
   EXPECT_EQ(keys(report["domains"][0]),
             (std::set<std::string>{
                 "id",        "name",    "parent", "kind",          "level", "group",   "length_m",

@@ -43,10 +43,9 @@ TEST(MergeBelow, MakesABranchAndItsTwigsOneAndKeepsLeaves) {
   EXPECT_EQ(coarse.plant.notes.size(), 1u);
 }
 
-// Figure 18: in the coarse decomposition small branches share the material of what they grow on, which is
-// stiffer than the law would make them; the whole branch, longer with its twigs, swings no faster than
-// before.
-TEST(MergeBelow, MakesSmallBranchesStifferAndSlower) {
+// Figure 18: in the coarse decomposition small branches share the material of what they grow on, and lose the
+// lively motion of their own; the whole branch, longer with its twigs, swings no faster than before.
+TEST(MergeBelow, SmallBranchesLoseTheirFasterMotion) {
   const SegmentedPlant fine_plant = make_small_plant();
   const MergedPlant merging = merged(fine_plant, 1);
   const Bake fine = bake(fine_plant), coarse = bake(merging.plant);
@@ -58,7 +57,6 @@ TEST(MergeBelow, MakesSmallBranchesStifferAndSlower) {
     SCOPED_TRACE(before.name);
     if (before.kind == DomainKind::Branch && before.level == 2) {
       ++twigs;
-      EXPECT_GT(now.youngs_modulus, before.youngs_modulus);
       EXPECT_LT(now.material.frequency, before.material.frequency);
     } else if (before.kind == DomainKind::Branch && before.level == 1) {
       EXPECT_GE(now.length, before.length * (1 - 1e-9));

@@ -6,6 +6,7 @@
 
 #include "mesher/base/error.h"
 #include "mesher/base/files.h"
+#include "mesher/base/memory.h"
 #include "mesher/base/mesh_checks.h"
 #include "mesher/io/triangle_soup.h"
 #include "tests/support/scratch_folder.h"
@@ -125,6 +126,11 @@ TEST(PlyReader, ReadsWhatOpenMeshWrites) {
   expect_openmesh_roundtrip(".ply", Options(Options::Default), parse_ply);
   expect_openmesh_roundtrip(".ply", Options(Options::Binary), parse_ply);
   expect_openmesh_roundtrip(".ply", Options(Options::Binary | Options::MSB), parse_ply);
+}
+
+TEST(RequireMemory, SaysHowMuchIsNeededAndFree) {
+  EXPECT_NO_THROW(require_memory(1 << 20, "a small mesh"));
+  EXPECT_MENTIONS(complaint([] { require_memory(size_t{1} << 60, "a huge mesh"); }), "a huge mesh needs about");
 }
 
 const std::string kHead =

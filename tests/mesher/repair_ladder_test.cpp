@@ -17,7 +17,7 @@ namespace {
 TEST(RepairLadder, WhateverIsDoneToATubeItIsASolidOrABeam) {
   std::mt19937 random(11);
   std::map<std::string, int> rungs;
-  for (int round = 0; round < 1500; ++round) {
+  for (int round = 0; round < 150; ++round) {
     Mesh mesh = make_tube({.sides = 5 + int(random() % 4),
                            .length = 0.3,
                            .diameter = 0.02,
@@ -30,8 +30,7 @@ TEST(RepairLadder, WhateverIsDoneToATubeItIsASolidOrABeam) {
     const unsigned harms = random() % 4;
     for (unsigned i = 0; i < harms; ++i) harm(mesh, random);
     SegmentedPlant plant;
-    plant.domains.push_back(
-        {.name = "tube", .kind = DomainKind::Branch, .group = "g", .surface = weld(mesh)});
+    plant.domains.push_back({.name = "tube", .parent = {}, .group = "g", .surface = weld(mesh)});
     try {
       const SolidDomain solid = make_solid(plant, DomainId(0));
       const bool wrapped = solid.route.find("alpha-wrapped") != std::string::npos;
@@ -54,7 +53,7 @@ TEST(RepairLadder, WhateverIsDoneToATubeItIsASolidOrABeam) {
     }
   }
   for (const auto& [rung, count] : rungs) std::printf("  %s %d\n", rung.c_str(), count);
-  EXPECT_GT(rungs["exact"], 700);
+  EXPECT_GT(rungs["exact"], 70);
 }
 
 TEST(Mend, LeavesASoundSurfaceAlone) {

@@ -20,8 +20,8 @@ TEST(SolidUnion, OfCrossingBarsHasTheVolumeOfBothLessWhatTheyShare) {
   EXPECT_TRUE(find_adjacency(mesh).oriented);
 }
 
-// A prism is π/2 n sin(2π/n) r² ℓ; the twig starts on the axis, at right angles, and all of it beyond the
-// branch's side is added: between ℓ - r and ℓ - r cos(π/n) of it.
+// The twig (0.5 m) leaves a branch of 0.05 m radius at a slant, from 0.014 m beside its axis: between 0.03
+// and 0.08 m of it are inside.
 TEST(SolidUnion, AddsATwigAsFarAsItStandsOut) {
   const MarkedMesh branch = make_prism(12, 1, 0.1), twig = make_prism(12, 0.5, 0.03);
   const Affine3 place =

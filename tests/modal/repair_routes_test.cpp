@@ -38,7 +38,7 @@ Outcome solve(const Mesh& surface, DomainKind kind = DomainKind::Branch) {
   const SolidDomain solid = make_solid(plant, DomainId(0));
   Progress silent;
   const AllModes all =
-      solve_domains({{&solid.surface, solid.is_root, {}, solid.centreline, solid.volume, solid.is_beam}}, {},
+      solve_domains({{&solid.surface, solid.is_root, {}, {}, solid.centreline, solid.volume, solid.is_beam}}, {},
                     {.modes = {}, .tets = {}, .threads = 1}, silent);
   const DomainModes& modes = all.domains[0];
   EXPECT_EQ(modes.failure, "");
@@ -122,7 +122,7 @@ TEST(RepairRoutes, TheBeamOfABranchIsWithinThreePercentOfItsSolid) {
     const SegmentedPlant plant = alone(make_tube(shape).mesh);
     const SolidDomain solid = make_solid(plant, DomainId(0));
     Progress silent;
-    const Solid whole{&solid.surface, solid.is_root, {}, {}, 0, false};
+    const Solid whole{&solid.surface, solid.is_root, {}, {}, {}, 0, false};
     const double truth = solve_domains({whole}, {}, {.modes = {}, .tets = {}, .threads = 1}, silent)
                              .domains[0]
                              .frequencies.at(0);

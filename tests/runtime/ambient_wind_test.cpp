@@ -1,9 +1,10 @@
+#include "runtime/wind/ambient_wind.h"
+
 #include <gtest/gtest.h>
 
 #include <complex>
 
 #include "mesher/base/error.h"
-#include "runtime/wind/ambient_wind.h"
 
 namespace liana {
 namespace {
@@ -34,8 +35,8 @@ AmbientParameters gale(uint64_t seed) {
 }
 
 TEST(AmbientWind, HasVonKarmansSpectrum) {
-  // The variance in each octave against the integral of the formula. Waves nearer to each other than a record of 410 s
-  // can tell beat: in one record an octave may be off by half, in the mean over 40 by a tenth.
+  // The variance in each octave against the integral of the formula. Waves nearer to each other than a record
+  // of 410 s can tell beat: in one record an octave may be off by half, in the mean over 40 by a tenth.
   const double dt = 0.1, U = 5, L = 20;
   const size_t n = 4096, seeds = 40;
   const AmbientParameters p = gale(1);
@@ -75,8 +76,8 @@ TEST(AmbientWind, HasItsMeanAndIntensity) {
 }
 
 TEST(AmbientWind, HasDavenportsCoherence) {
-  // Co-spectrum of two points across the wind over the spectrum, averaged over seeds and an octave: exp(−C f Δ/U).
-  // 60 seeds × 13 waves of random direction: standard error below 0.05.
+  // Co-spectrum of two points across the wind over the spectrum, averaged over seeds and an octave: exp(−C f
+  // Δ/U). 60 seeds × 13 waves of random direction: standard error below 0.05.
   const double dt = 0.1;
   const size_t n = 1024;
   for (const Vec3& apart : {Vec3(0, 0.5, 0), Vec3(0, 0, 1.5)})

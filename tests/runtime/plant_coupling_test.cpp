@@ -1,3 +1,5 @@
+#include "runtime/wind/plant_coupling.h"
+
 #include <gtest/gtest.h>
 
 #include "mesher/base/hash.h"
@@ -5,7 +7,6 @@
 #include "runtime/sim/plant_from_bake.h"
 #include "runtime/sim/rod_section.h"
 #include "runtime/sim/state_hash.h"
-#include "runtime/wind/plant_coupling.h"
 #include "runtime/wind/sph_wind.h"
 #include "tests/support/synthetic_bake.h"
 
@@ -22,7 +23,8 @@ Plant loose(DomainKind kind, const Vec3& half_axes, double density, const std::v
   for (size_t i = 0; i < places.size(); ++i) {
     Particle particle;
     particle.branch = BranchId(0);
-    particle.half_width = half_axes.x(), particle.half_length = half_axes.y(), particle.half_thickness = half_axes.z();
+    particle.half_width = half_axes.x(), particle.half_length = half_axes.y(),
+    particle.half_thickness = half_axes.z();
     particle.mass = density * 4 * kPi / 3 * half_axes.prod();
     particle.inertia = rod_inertia(particle.mass, half_axes.y(), half_axes.x(), half_axes.z());
     plant.particles.push_back(particle);
@@ -85,7 +87,8 @@ struct Meeting {
   }
   Vec3 plant_momentum() const {
     Vec3 sum = Vec3::Zero();
-    for (size_t i = 0; i < plant.particles.size(); ++i) sum += plant.particles[i].mass * plant.motion[i].velocity;
+    for (size_t i = 0; i < plant.particles.size(); ++i)
+      sum += plant.particles[i].mass * plant.motion[i].velocity;
     return sum;
   }
 };

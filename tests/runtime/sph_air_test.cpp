@@ -38,10 +38,13 @@ size_t nearest(const SphAir& air, const Vec3& place) {
   return best;
 }
 
-uint64_t hash_of(const SphAir& air) { return hash_bytes(air.states(), air.size() * sizeof(AirState)); }
+uint64_t hash_of(const SphAir& air) {
+  return hash_bytes(air.states(), air.size() * sizeof(AirState));
+}
 
 TEST(SphKernels, WallIntegralsAreThoseOfTheHalfSpace) {
-  // Rings about the wall's normal, 400 x 400 of them: the midpoint rule is good to 1e-5 of the value at the wall.
+  // Rings about the wall's normal, 400 x 400 of them: the midpoint rule is good to 1e-5 of the value at the
+  // wall.
   for (const double d : {0.0, 0.3, 0.7}) {
     WallIntegrals sum = {0, 0, 0};
     const int n = 400;
@@ -95,13 +98,15 @@ TEST(SphAir, ConservesItsMomentum) {
 }
 
 TEST(SphAir, AShearWaveDecaysAsViscosityTellsIt) {
-  // v_x = V sin(kz) decays as exp(-ν k² t). 24 layers, a wave over 16 of them. Müller's Laplacian is short by 1.2 % on
-  // this lattice and by (k h)²/56 = 1.1 % for the wave's own curvature (the next moment of the kernel).
+  // v_x = V sin(kz) decays as exp(-ν k² t). 24 layers, a wave over 16 of them. Müller's Laplacian is short
+  // by 1.2 % on this lattice and by (k h)²/56 = 1.1 % for the wave's own curvature (the next moment of the
+  // kernel).
   AirOptions options = roomy();
   options.viscosity = 0.13, options.sound_speed = 15;
   SphAir air(options);
   const double k = 2 * kPi / 1.6, nu = options.viscosity / options.rest_density, speed = 0.02;
-  fill(air, 24, 0.1, Vec3::Constant(-1.15), [&](const Vec3& x) { return Vec3(speed * std::sin(k * x.z()), 0, 0); });
+  fill(air, 24, 0.1, Vec3::Constant(-1.15),
+       [&](const Vec3& x) { return Vec3(speed * std::sin(k * x.z()), 0, 0); });
   const double end = 0.4, dt = 0.004;
   for (double t = 0; t < end - 1e-9; t += dt) air.step(dt);
   // Far from the faces of the block: what is missing there reaches √(2 ν t) = 0.28 m inwards.

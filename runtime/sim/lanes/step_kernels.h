@@ -27,20 +27,28 @@ using namespace lanes;  // strides
 // m: what the gap of a particle without length is measured against.
 constexpr double kShortest = 1e-3;
 
-// Record of a pack: Lanes at these places.
-constexpr int kFrame = 0;         // F, D = F B⁻¹: 18
-constexpr int kLeverChild = 18;   // r_c: 3
-constexpr int kLeverParent = 21;  // r_p: 3
-constexpr int kSpring = 24;       // w, later dᵀb / c: 6
-constexpr int kAction = 30;       // force and moment of the joint on the child at P: 6
-constexpr int kRow = 36;          // dᵀA / c of each spring: 36
-constexpr int kGapWeight = 72;    // 1 / length², 0 where nothing closes the joint
+// Record of a pack: Lanes at these places. In a large plant the records are most of what moves between memory
+// and processor, so nothing is kept that another number gives.
+constexpr int kFrame = 0;         // F, its first two columns: 6
+constexpr int kBendFrame = 6;     // D = F B⁻¹: 9
+constexpr int kLeverChild = 15;   // r_c: 3
+constexpr int kLeverParent = 18;  // r_p: 3
+constexpr int kSpring = 21;       // w, later dᵀb / c: 6
+constexpr int kGapWeight = 27;    // 1 / length², 0 where nothing closes the joint
+constexpr int kRow = 28;          // dᵀA / c of each spring: 36
+constexpr int kAction = 28;       // before: force and moment of the joint on the child at P: 6
 
 inline Vec3L load3(const double* at) {
   return {load(at), load(at + 4), load(at + 8)};
 }
 inline void store3(const Vec3L& v, double* at) {
   store(v.x, at), store(v.y, at + 4), store(v.z, at + 8);
+}
+
+// Joint direction k: F e_k, then D e_k.
+inline Vec3L direction(const double* record, int k) {
+  if (k == 2) return cross(load3(record + 4 * kFrame), load3(record + 4 * (kFrame + 3)));
+  return load3(record + 4 * (k < 2 ? kFrame + 3 * k : kBendFrame + 3 * (k - 3)));
 }
 
 struct PoseL {
@@ -178,8 +186,8 @@ inline void assemble(const StepView& view, size_t begin, size_t end) {
     for (int k = 0; k < 3; ++k) {
       Vec3L d = log.turn1 * a[k] + log.turn2 * cross(phi, a[k]);
       (k == 0 ? d.x : k == 1 ? d.y : d.z) += all(1);
-      store3(F.column[k], record + 4 * (kFrame + 3 * k));
-      store3(F * d, record + 4 * (kFrame + 9 + 3 * k));
+      if (k < 2) store3(F.column[k], record + 4 * (kFrame + 3 * k));
+      store3(F * d, record + 4 * (kBendFrame + 3 * k));
     }
     store3(r_c, record + 4 * kLeverChild);
     store3(r_p, record + 4 * kLeverParent);
@@ -274,7 +282,7 @@ inline void factor(const StepView& view, size_t begin, size_t end) {
     force = force + joint_force;
     moment = moment + joint_moment;
     for (int k = 0; k < 3; ++k) {
-      const Vec3L d = load3(record + 4 * (kFrame + 3 * k));
+      const Vec3L d = direction(record, k);
       const Vec3L ut = symmetric_times(A.P, d);
       const Vec3L ur{A.Q[0][0] * d.x + A.Q[0][1] * d.y + A.Q[0][2] * d.z,
                      A.Q[1][0] * d.x + A.Q[1][1] * d.y + A.Q[1][2] * d.z,
@@ -284,7 +292,7 @@ inline void factor(const StepView& view, size_t begin, size_t end) {
                 record + 4 * (kRow + 6 * k), spring);
     }
     for (int k = 3; k < 6; ++k) {
-      const Vec3L d = load3(record + 4 * (kFrame + 3 * k));
+      const Vec3L d = direction(record, k);
       const Vec3L ut{A.Q[0][0] * d.x + A.Q[1][0] * d.y + A.Q[2][0] * d.z,
                      A.Q[0][1] * d.x + A.Q[1][1] * d.y + A.Q[2][1] * d.z,
                      A.Q[0][2] * d.x + A.Q[1][2] * d.y + A.Q[2][2] * d.z};
@@ -319,7 +327,7 @@ inline AccelerationL substitute_pack(const double* record, const AccelerationL& 
   for (int k = 5; k >= 0; --k) {
     const double* row = record + 4 * (kRow + 6 * k);
     const Lanes s = load(record + 4 * (kSpring + k)) - (dot(load3(row), move) + dot(load3(row + 12), turn));
-    const Vec3L d = load3(record + 4 * (kFrame + 3 * k));
+    const Vec3L d = direction(record, k);
     if (k >= 3)
       turn = turn + s * d;
     else

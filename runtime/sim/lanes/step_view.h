@@ -23,7 +23,7 @@ constexpr int kMotionStride = 20;    ///< struct Motion
 constexpr int kPoseStride = 16;   ///< position 3, –, orientation 4, velocity 3, angular velocity 3, – –
 constexpr int kBlockStride = 28;  ///< A_i 21 (lower triangle, row by row), b_i 6, –
 constexpr int kBlockLoad = 21;
-constexpr int kRecordLanes = 73;  ///< Lanes per pack, see step_kernels.h
+constexpr int kRecordLanes = 64;  ///< Lanes per pack, see step_kernels.h
 
 /// One substep over one plant. Symbols as in time_step.h.
 struct StepView {
