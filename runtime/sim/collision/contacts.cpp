@@ -104,8 +104,16 @@ void Contacts::notice_new_particles(const Plant& plant, const CollisionScene& sc
   });
   for (size_t i = known; i < plant.particles.size(); ++i) {
     const ParticleId parent = plant.particles[i].parent;
-    exempt_.push_back(!parent.valid() || (inside[i - known] && exempt_[parent.index()]));
+    const bool held = !plant.particles[i].joint.shear_stiffness.isZero(0);
+    exempt_.push_back(parent.valid() ? inside[i - known] && exempt_[parent.index()] : held);
   }
+}
+
+void Contacts::follow(const TopologyChange& change) {
+  size_t kept = 0;
+  for (size_t i = 0; i < exempt_.size() && i < change.particles.size(); ++i)
+    if (change.particles[i].valid()) exempt_[kept++] = exempt_[i];
+  exempt_.resize(kept);
 }
 
 // With the force k(t - x₁) - d v₁ of the end of the step, d = kΔt and k ≫ m/Δt², the step ends with

@@ -11,6 +11,7 @@
 
 #include "runtime/sim/collision/sdf_obstacle.h"
 #include "runtime/sim/plant.h"
+#include "runtime/sim/topology.h"
 
 namespace liana {
 
@@ -47,6 +48,9 @@ class Contacts {
   /// none, for taking the step again from `before`. Returns how many.
   size_t gather_missed(const Plant& after, std::span<const Motion> before, const CollisionScene& scene,
                        double tolerance, std::vector<WorldSpring>& springs);
+
+  /// The plant lost particles: what is known of the others goes with them.
+  void follow(const TopologyChange& change);
 
   /// Only looks: the report of the present state, with no springs.
   ContactReport measure(const Plant& plant, const CollisionScene& scene);
