@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesher/base/parallel.h"
 #include "mesher/surface/solid_domain.h"
 #include "mesher/tets/tetrahedralize.h"
 #include "modal/lowest_mode.h"
@@ -49,36 +50,46 @@ VtuMesh with_materials(const Bake& bake, const std::vector<UnitedPart>& parts,
 }  // namespace
 
 std::vector<UnitedPart> baked_solids(const SegmentedPlant& plant, const Bake& bake) {
-  std::vector<UnitedPart> parts;
+  std::vector<DomainId> sources;
   size_t index = 0;  // the bake's domains are the plant's in order, less those left out
   for (const BakedDomain& baked : bake.domains) {
     while (index < plant.domains.size() && plant.domains[index].name != baked.name) ++index;
     if (index == plant.domains.size())
       throw Error(Error::Kind::Input, "domain '" + baked.name + "' of the bake is not in " + plant.name,
                   "bake this plant again");
-    const SolidDomain solid = make_solid(plant, DomainId(index++));
-    UnitedPart part{
-        .mesh = tetrahedralize(solid.surface, solid.is_root),
-        .material = {baked.youngs_modulus, baked.density, bake.law.default_material.poisson_ratio},
-        .scaling = {},
-        .parent = baked.parent.valid() ? static_cast<int>(baked.parent.index()) : -1};
-    if (const TaperLaw& taper = bake.law.group(baked.group).taper; !taper.uniform())
-      part.scaling = tapered(part.mesh, taper);
-    parts.push_back(std::move(part));
+    sources.push_back(DomainId(index++));
   }
+  std::vector<UnitedPart> parts(sources.size());
+  parallel_for(parts.size(), 0, [&](size_t i, unsigned) {
+    const BakedDomain& baked = bake.domains[i];
+    const SolidDomain solid = make_solid(plant, sources[i]);
+    if (solid.is_beam)
+      throw Error(
+          Error::Kind::Input,
+          plant.name + ": domain '" + baked.name + "' could only be made a beam, which has no tetrahedra",
+          "mend its surface, or bake without --vtu and compare with liana modes FILE.bake");
+    parts[i] = {.mesh = tetrahedralize(solid.surface, solid.is_root),
+                .material = {baked.youngs_modulus, baked.density, bake.law.default_material.poisson_ratio},
+                .scaling = {},
+                .parent = baked.parent.valid() ? static_cast<int>(baked.parent.index()) : -1};
+    if (const TaperLaw& taper = bake.law.group(baked.group).taper; !taper.uniform())
+      parts[i].scaling = tapered(parts[i].mesh, taper);
+  });
   return parts;
 }
 
 VtuMesh domains_vtu(const Bake& bake, const std::vector<UnitedPart>& parts) {
-  std::vector<NodeMesh> meshes;
+  std::vector<NodeMesh> meshes(parts.size());
+  std::vector<std::vector<double>> shapes(parts.size());
+  parallel_for(parts.size(), 0, [&](size_t p, unsigned) {
+    meshes[p] = make_nodes(parts[p].mesh, Element::T10);
+    const Modes modes = lowest_modes(parts[p].mesh, parts[p].material, {}, {}, parts[p].scaling);
+    shapes[p].assign(modes.shapes[0].begin(), modes.shapes[0].end());
+    scale_to_one(shapes[p]);
+  });
   VtuField mode{"mode", 3, {}};
-  for (const UnitedPart& part : parts) {
-    meshes.push_back(make_nodes(part.mesh, Element::T10));
-    const Modes modes = lowest_modes(part.mesh, part.material, {}, {}, part.scaling);
-    std::vector<double> values(modes.shapes[0].begin(), modes.shapes[0].end());
-    scale_to_one(values);
-    mode.values.insert(mode.values.end(), values.begin(), values.end());
-  }
+  for (const std::vector<double>& shape : shapes)
+    mode.values.insert(mode.values.end(), shape.begin(), shape.end());
   VtuMesh vtu = with_materials(bake, parts, meshes);
   vtu.point_fields.push_back(std::move(mode));
   return vtu;

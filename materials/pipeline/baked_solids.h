@@ -9,7 +9,8 @@
 
 namespace liana {
 
-/// One part for each domain of the bake, in its order. Throws Error{Input} when the plant is not the bake's.
+/// One part for each domain of the bake, in its order, made on all cores. Throws Error{Input} when the plant
+/// is not the bake's, and naming the domain when it could only be made a beam, which has no tets.
 std::vector<UnitedPart> baked_solids(const SegmentedPlant& plant, const Bake& bake);
 
 /// Each domain by itself, held at its root: its lowest mode, as the bake found it with its own material but

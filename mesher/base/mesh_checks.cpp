@@ -60,10 +60,12 @@ std::vector<std::vector<uint32_t>> border_loops(const Mesh& mesh, const Adjacenc
         // Turn around the edge's end, through the triangles there, to the border edge that leaves it.
         const uint32_t pivot = mesh.triangles[triangle][(edge + 1) % 3];
         edge = (edge + 1) % 3;
-        while (adjacency.across[triangle][edge] != Adjacency::kNone) {
+        size_t turns = 0;
+        while (adjacency.across[triangle][edge] != Adjacency::kNone && turns++ < mesh.triangles.size()) {
           triangle = adjacency.across[triangle][edge];
           edge = edge_from(triangle, pivot);
         }
+        if (adjacency.across[triangle][edge] != Adjacency::kNone) break;  // round in circles: wound both ways
       }
       loops.push_back(std::move(loop));
     }

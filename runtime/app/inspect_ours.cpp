@@ -1,8 +1,10 @@
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
 #include "materials/bake/bake_file.h"
+#include "materials/law/material_model.h"
 #include "materials/law/species_file.h"
 #include "mesher/base/error.h"
 #include "mesher/base/files.h"
@@ -18,6 +20,15 @@ using Json = nlohmann::json;
 
 std::string point(const Vec3& p) {
   return fmt::format("({:.3g}, {:.3g}, {:.3g})", p.x(), p.y(), p.z());
+}
+
+/// What a group claims of the plant: `name "frond*", branches, level 1`.
+std::string match_text(const GroupMatch& match) {
+  std::vector<std::string> parts;
+  if (!match.name.empty()) parts.push_back(fmt::format("name \"{}\"", match.name));
+  if (match.kind) parts.push_back(*match.kind == DomainKind::Leaf ? "leaves" : "branches");
+  if (match.level >= 0) parts.push_back(fmt::format("level {}", match.level));
+  return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 /// "key value" for every plain value, one level of nesting in one line, and the length of every list.
@@ -47,9 +58,12 @@ std::string inspect_bake(const std::filesystem::path& path, const InspectOptions
 
 std::string inspect_species(const std::filesystem::path& path) {
   const SpeciesFile species = read_species_file(path);
-  std::string text = fmt::format("{}: species '{}': {}\nhash {}\n\n", path.string(), species.law.species,
+  std::string text = fmt::format("{}: species '{}': {}\nhash    {}\n", path.string(), species.law.species,
                                  species.description, hash_text(species.hash));
-  text += fmt::format("{:<40} {:>10}  {:<12} {:<8} {}\n", "number", "value", "unit", "sure?", "source");
+  text += fmt::format("model   {}\n", model_name(species.law.model.model));
+  for (const auto& [name, group] : species.law.groups)
+    if (!group.match.empty()) text += fmt::format("group   {} claims {}\n", name, match_text(group.match));
+  text += fmt::format("\n{:<40} {:>10}  {:<12} {:<8} {}\n", "number", "value", "unit", "sure?", "source");
   for (const SourcedNumber& number : species.numbers)
     text += fmt::format("{:<40} {:>10.6g}  {:<12} {:<8} {}\n", number.where, number.value, number.unit,
                         number.confidence, number.source);

@@ -201,6 +201,43 @@ TEST_F(BadInput, SceneThatNamesAMissingFileSaysWhereAndWhich) {
   expect_refused({"simulate", "scene.toml"}, "absent.bake");
 }
 
+TEST_F(BadInput, WindOfASceneIsRefusedWithItsLine) {
+  const std::string climber = "[[climber]]\nspecies = \"ivy\"\nposition = [0, 0, 0]\n";  // lines 1 to 3
+  const std::string emitter =
+      "[wind]\n[[wind.emitter]]\ncenter = [-1, 1, 0]\ndirection = [1, 0, 0]\nspeed = 5\nradius = 0.5\n";
+  const struct { std::string text; int line; const char* said; } cases[] = {
+      {"[wind]\nvelocity = [300, 0, 0]\n", 5, "'velocity' is above 100 m/s"},
+      {"[wind]\nvelocity = [1, 0, 0]\nkind = \"storm\"\n", 6, "'kind' must be"},
+      {"[wind]\nvelocity = [0, 0, 0]\nkind = \"ambient\"\n", 5, "must not be zero"},
+      {"[wind]\nvelocity = [1, 0, 0]\ngusst = 0.2\n", 6, "did you mean 'gust'"},
+      {"[wind]\nvelocity = [1, 0, 0]\n[wind.air]\nspacing = 0.1\n", 6, "needs an emitter"},
+      {emitter + "colour = 1\n", 10, "'colour' is not known"},
+      {"[wind]\n[[wind.emitter]]\ncenter = [0, 1, 0]\ndirection = [0, 0, 0]\nspeed = 5\n", 7, "'direction'"},
+      {"[wind]\n[[wind.emitter]]\ncenter = [0, 1, 0]\ndirection = [1, 0, 0]\nspeed = 500\n", 8, "'speed'"},
+      {emitter + "[wind.air]\nspacing = 0\n", 11, "'spacing' is 0"},
+      {emitter + "[wind.air]\nlow = [5, 5, 5]\nhigh = [9, 9, 9]\n", 6, "outside of the air's domain"},
+      {"[[pluck]]\ndomain = \"trunk\"\nvelocity = [1, 0, 0]\n", 4, "no [[plant]] to pluck"}};
+  for (const auto& [text, line, said] : cases) {
+    SCOPED_TRACE(text);
+    write("scene.toml", climber + text);
+    expect_refused({"simulate", "scene.toml"}, said);
+    expect_refused({"simulate", "scene.toml"}, "scene.toml:" + std::to_string(line) + ":");
+  }
+}
+
+TEST_F(BadInput, PluckIsRefusedWithItsLineOrTheNameItMeans) {
+  small_bake();
+  const std::string plant = "[[plant]]\nbake = \"small.bake\"\n[[pluck]]\n";
+  write("fast.toml", plant + "domain = \"trunk\"\nvelocity = [101, 0, 0]\n");
+  expect_refused({"simulate", "fast.toml"}, "fast.toml:5: 'velocity' is above 100 m/s");
+  write("far.toml", plant + "plant = 1\ndomain = \"trunk\"\nvelocity = [1, 0, 0]\n");
+  expect_refused({"simulate", "far.toml"}, "far.toml:4: 'plant'");
+  write("late.toml", plant + "time = -1\ndomain = \"trunk\"\nvelocity = [1, 0, 0]\n");
+  expect_refused({"simulate", "late.toml"}, "late.toml:4: 'time'");
+  write("none.toml", plant + "domain = \"trnk\"\nvelocity = [1, 0, 0]\n");
+  expect_refused({"simulate", "none.toml"}, "did you mean 'trunk'");
+}
+
 TEST_F(BadInput, AbsurdNumbersAreRefused) {
   const std::string apple = read_file(kData / "species/apple.toml");
   expect_refused({"bake", kSmallTree, "--species", "apple", "--set", "default_material.density=-3", "-o", "x.bake"},

@@ -170,6 +170,8 @@ TEST_F(CommandLine, InspectSaysWhatItUnderstands) {
   EXPECT_TRUE(says(outcome, ".bake"));
   EXPECT_TRUE(says(shell("\"$L\" inspect --species"), "schefflera"));
   EXPECT_TRUE(says(shell("\"$L\" inspect --species apple"), "Niklas"));
+  EXPECT_TRUE(says(shell("\"$L\" inspect --species apple"), "model   power"));
+  EXPECT_TRUE(says(shell("\"$L\" inspect --species schefflera"), "claims name \"P0\""));
 }
 
 }  // namespace

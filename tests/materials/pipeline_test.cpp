@@ -8,6 +8,7 @@
 #include "materials/law/material_model.h"
 #include "materials/law/power_law.h"
 #include "materials/pipeline/bake_plant.h"
+#include "materials/pipeline/baked_solids.h"
 #include "mesher/surface/solid_domain.h"
 #include "tests/support/shapes.h"
 
@@ -78,6 +79,28 @@ TEST(BakePlant, BakesEveryDomainByItsLaw) {
     EXPECT_DOUBLE_EQ(domain.density, domain.material.mass_scaling * law.default_material.density);
     EXPECT_GE(domain.stiffness_ratio, 1 - 1e-9);
   }
+}
+
+// [Wang17] Eq. 10 and 11: ν_default is that of the tapered domain, and with the bake's E and ρ as they vary
+// along it it swings at the law's frequency. Scaling K and M by constants is exact but for rounding: 1e-9.
+TEST(BakePlant, TaperedMaterialSwingsAtTheLawsFrequencyAfterReading) {
+  const SegmentedPlant plant = plant_of(make_prism(6, 1, 0.05).mesh);
+  SpeciesLaw law = test_law();
+  law.groups["level0"].taper = {1.2, 0.2, 2};
+  Progress silent;
+  const Bake baked = bake_plant(plant, law, {}, silent).bake;
+  const Bake read = decode_bake(encode_bake(baked), "taper.bake");
+  ASSERT_EQ(read.domains.size(), 1u);
+  const BakedDomain& domain = read.domains[0];
+  EXPECT_EQ(read.law.group(domain.group).taper, law.groups["level0"].taper);
+  EXPECT_GT(std::abs(domain.default_frequency / bake(plant).bake.domains[0].default_frequency - 1), 0.05);
+  EXPECT_DOUBLE_EQ(domain.stiffness_scaling, domain.material.mass_scaling *
+                                                 std::pow(domain.material.frequency / domain.default_frequency, 2));
+
+  const std::vector<UnitedPart> parts = baked_solids(plant, read);
+  ASSERT_EQ(parts[0].scaling.size(), parts[0].mesh.tets.size());
+  const Modes modes = lowest_modes(parts[0].mesh, parts[0].material, {}, {}, parts[0].scaling);
+  EXPECT_NEAR(modes.frequencies[0] / domain.material.frequency, 1, 1e-9);
 }
 
 // The definition of the scaled material: with E and ρ of the bake and the true masses of all descendants on

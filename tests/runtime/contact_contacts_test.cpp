@@ -7,7 +7,8 @@
 namespace liana {
 namespace {
 
-/// One free stem particle, 6 cm long and 4 mm thick, of 2 g, after a root far above that holds nothing.
+/// One free stem particle, 6 cm long and 4 mm thick, of 2 g, after a root that the world holds far above and that
+/// holds nothing itself.
 Plant loose_stick(const Vec3& position, const Quat& orientation) {
   Plant plant;
   plant.branches.resize(1);
@@ -19,6 +20,10 @@ Plant loose_stick(const Vec3& position, const Quat& orientation) {
     particle.mass = 2e-3;
     particle.inertia = rod_inertia(2e-3, 0.03, 2e-3, 2e-3);
     if (i == 1) particle.parent = ParticleId(0);
+    if (i == 0) {
+      particle.joint.on_parent = {0, 50, 0};
+      particle.joint.shear_stiffness = Vec3::Constant(1e3);
+    }
     plant.particles.push_back(particle);
     plant.branches[0].particles.push_back(ParticleId(i));
   }

@@ -27,6 +27,7 @@ function readable(value) {
 }
 
 function withUnit(value, unit) {
+  if (unit === "kg" && Math.abs(value) >= 1e4) return withUnit(value / 1e3, "t");
   return unit ? readable(value).replace(/([0-9])$/, "$1 ") + unit : readable(value);
 }
 
@@ -47,11 +48,11 @@ function ticks(least, most, log, about) {
   if (log) {
     const decades = Math.log10(most / least);
     for (let power = Math.floor(Math.log10(least)); power <= Math.ceil(Math.log10(most)); ++power)
-      for (const digit of decades > 2.6 ? [1] : [1, 2, 5]) {
+      for (const digit of decades > 3.2 ? [1] : [1, 2, 5]) {
         const value = digit * 10 ** power;
         if (value >= least * 0.999 && value <= most * 1.001) found.push(value);
       }
-    if (found.length > 2) return found;
+    if (found.length > 2 || decades > 1) return found;
     found.length = 0;
   }
   const raw = (most - least) / about, scale = 10 ** Math.floor(Math.log10(raw));
