@@ -10,6 +10,7 @@
 #include "runtime/sim/plant_from_bake.h"
 #include "runtime/sim/state_hash.h"
 #include "runtime/sim/topology.h"
+#include "tests/support/plant_energy.h"
 #include "tests/support/synthetic_bake.h"
 
 namespace liana::test {
@@ -28,30 +29,10 @@ Vec3 random_vector(Random& random) {
   return v;
 }
 
-// J, of what can be seen: motion, bending, height. What joints hold in stretch is left out: they are so stiff
-// that the hundredth of a length which a step may leave open would hold more than all the rest.
-double energy(const Plant& plant) {
-  double sum = 0;
-  for (size_t i = 0; i < plant.particles.size(); ++i) {
-    const Particle& p = plant.particles[i];
-    const Motion& m = plant.motion[i];
-    const auto pose = [&](size_t k) {
-      return BodyPose{.position = plant.motion[k].position, .orientation = plant.motion[k].orientation};
-    };
-    const JointStrain e =
-        joint_strain(p.joint, p.parent.valid() ? pose(p.parent.index()) : BodyPose(), pose(i));
-    const Vec3 spin = m.orientation.conjugate() * m.angular_velocity;
-    sum += 0.5 * (p.mass * m.velocity.squaredNorm() + p.inertia.dot(spin.cwiseAbs2()) +
-                  p.joint.bend_stiffness.dot(e.bend.vector.cwiseAbs2())) -
-           p.joint.rest_moment.dot(e.bend.vector) + 9.81 * p.mass * m.position.y();
-  }
-  return sum;
-}
-
 }  // namespace
 
 AbusedGarden::Victim::Victim(uint64_t seed)
-    : plant(fresh_plant()), random(seed, "tests/abused_garden"), rest_energy(energy(plant)) {}
+    : plant(fresh_plant()), random(seed, "tests/abused_garden"), rest_energy(visible_energy(plant)) {}
 
 AbusedGarden::AbusedGarden(uint64_t seed, size_t plants, unsigned threads) : threads_(threads) {
   for (size_t i = 0; i < plants; ++i) victims_.emplace_back(seed + i);
@@ -197,11 +178,11 @@ void AbusedGarden::advance(Victim& v, double dt) {
 void AbusedGarden::rest(Victim& v) {
   constexpr double kSlack = 0.25, kSmall = 0.05;  // -, J
   for (int i = 0; i < 4; ++i) advance(v, kDt);    // the support's return is work
-  const double floor = std::min(v.rest_energy, energy(v.plant));
-  const double start = energy(v.plant) - floor + kSmall;
+  const double floor = std::min(v.rest_energy, visible_energy(v.plant));
+  const double start = visible_energy(v.plant) - floor + kSmall;
   for (int i = 0; i < 40; ++i) {
     advance(v, kDt);
-    const double growth = (energy(v.plant) - floor) / start;
+    const double growth = (visible_energy(v.plant) - floor) / start;
     v.report.top_growth = std::max(v.report.top_growth, growth);
     if (growth > 1 + kSlack && v.broken.empty())
       v.broken = fmt::format("energy grew {:.3g} times in rest, after abuse {} at {:.2f} s", growth,
