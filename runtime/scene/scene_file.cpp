@@ -73,7 +73,8 @@ ScenePlant read_plant_entry(const TomlTable& table) {
 
 ScenePluck read_pluck(const TomlTable& table, size_t plants) {
   constexpr double kFastest = 100;  // m/s
-  if (plants == 0) table.fail("plant", "is none: the scene has no [[plant]] to pluck", "add [[plant]] bake = \"...\"");
+  if (plants == 0)
+    table.fail("plant", "is none: the scene has no [[plant]] to pluck", "add [[plant]] bake = \"...\"");
   ScenePluck pluck{static_cast<size_t>(table.integer_or("plant", 0, 0, static_cast<int64_t>(plants) - 1)),
                    table.text("domain"), table.number_or("time", 0, 0, 86400), table.vector("velocity")};
   if (pluck.velocity.norm() > kFastest) table.fail("velocity", "is above 100 m/s");
@@ -88,14 +89,14 @@ SceneClimber read_climber(const TomlTable& table) {
   else
     climber.species = table.text_or("species", "ivy");
   climber.position = table.vector("position");
-  climber.growth_speed = table.number_or("growth_speed", 1, 0, 4);
-  climber.max_particles = static_cast<size_t>(table.integer_or("max_particles", 4000, 1, 1'000'000));
-  climber.breaking = table.number_or("breaking", 0, 0, 1);
-  climber.stiffness = table.number_or("stiffness", 1, 1e-3, 1e3);
-  climber.weight_grown_in = table.number_or("weight_grown_in", 1, 0, 1);
-  climber.first_shoots =
-      static_cast<unsigned>(table.integer_or("first_shoots", ClimberParameters().first_shoots, 1, 64));
-  climber.longest_free = table.number_or("longest_free", ClimberParameters().longest_free, 0, 5);
+  climber.growth_speed = table.number_or("growth_speed", climber.growth_speed, 0, 4);
+  climber.max_particles = static_cast<size_t>(
+      table.integer_or("max_particles", static_cast<int64_t>(climber.max_particles), 1, 1'000'000));
+  climber.breaking = table.number_or("breaking", climber.breaking, 0, 1);
+  climber.stiffness = table.number_or("stiffness", climber.stiffness, 1e-3, 1e3);
+  climber.weight_grown_in = table.number_or("weight_grown_in", climber.weight_grown_in, 0, 1);
+  climber.first_shoots = static_cast<unsigned>(table.integer_or("first_shoots", climber.first_shoots, 1, 64));
+  climber.longest_free = table.number_or("longest_free", climber.longest_free, 0, 5);
   table.refuse_unknown_keys();
   return climber;
 }

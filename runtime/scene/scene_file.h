@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesher/base/mesh.h"
+#include "runtime/growth/climber_parameters.h"
 #include "runtime/sim/plant.h"
 #include "runtime/wind/sph_wind.h"
 
@@ -22,27 +23,27 @@ struct SceneObstacle {
 /// A plant from a bake, standing at a place.
 struct ScenePlant {
   std::filesystem::path bake;
-  Vec3 position;
-  double yaw;  ///< rad, about +Y
-  double breaking;  ///< t_s of [Haedrich17] in [0, 1]: 1 breaks as its wood does, 0 never
+  Vec3 position = Vec3::Zero();
+  double yaw = 0;       ///< rad, about +Y
+  double breaking = 0;  ///< t_s of [Haedrich17] in [0, 1]: 1 breaks as its wood does, 0 never
 };
 
 /// A climber that grows from a seed, with the law of a bake or of a species preset.
 struct SceneClimber {
   std::filesystem::path bake;  ///< empty when a species is named
   std::string species;
-  Vec3 position;
-  double growth_speed;  ///< multiple of the climber's normal pace
-  size_t max_particles;
-  double breaking;         ///< as of a plant
-  double stiffness;        ///< multiple of what its law gives; frequencies go with the root
-  double weight_grown_in;  ///< share of its weight that does not bend it, for it grew under it
-  unsigned first_shoots;
-  double longest_free;  ///< m that a shoot grows without hold
+  Vec3 position = Vec3::Zero();
+  double growth_speed = 1;  ///< multiple of the climber's normal pace
+  size_t max_particles = 4000;
+  double breaking = 0;         ///< as of a plant
+  double stiffness = 1;        ///< multiple of what its law gives; frequencies go with the root
+  double weight_grown_in = 1;  ///< share of its weight that does not bend it, for it grew under it
+  unsigned first_shoots = ClimberParameters().first_shoots;
+  double longest_free = ClimberParameters().longest_free;  ///< m that a shoot grows without hold
 };
 
-/// A branch or leaf is struck: its particles get a velocity that grows from nothing at its root with the square of
-/// the way to its tip (much like its lowest mode, so that it swings at its own frequency).
+/// A branch or leaf is struck: its particles get a velocity that grows from nothing at its root with the
+/// square of the way to its tip (much like its lowest mode, so that it swings at its own frequency).
 struct ScenePluck {
   size_t plant;        ///< which [[plant]], from 0
   std::string domain;  ///< name, or "#id", of a domain of its bake
@@ -52,11 +53,11 @@ struct ScenePluck {
 
 /// A place on a plant or climber.
 struct ScenePoint {
-  bool climber;             ///< of [[climber]] rather than of [[plant]]
-  size_t index;             ///< which of these, from 0
-  std::string domain;       ///< of a plant: name, or "#id", of a domain; empty: `at`
-  double along = 0;         ///< in [0, 1], of that domain's length
-  Vec3 at = Vec3::Zero();   ///< m, world: the particle of a stem nearest to it when it is needed
+  bool climber;            ///< of [[climber]] rather than of [[plant]]
+  size_t index;            ///< which of these, from 0
+  std::string domain;      ///< of a plant: name, or "#id", of a domain; empty: `at`
+  double along = 0;        ///< in [0, 1], of that domain's length
+  Vec3 at = Vec3::Zero();  ///< m, world: the particle of a stem nearest to it when it is needed
 };
 
 /// What grows from a place is cut off.
@@ -88,7 +89,7 @@ struct SceneWind {
   double gust_period = 6;        ///< Gust: s, from one strong gust to the next, about
   AmbientParameters ambient;     ///< Ambient: mean and seed are set from this table and the scene
   std::optional<SphWindParameters> air;
-  bool show_air = false;         ///< draw the air particles
+  bool show_air = false;  ///< draw the air particles
 };
 
 struct SceneCamera {
