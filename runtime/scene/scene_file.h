@@ -7,15 +7,19 @@
 #include <vector>
 
 #include "mesher/base/mesh.h"
+#include "runtime/scene/obstacle_motion.h"
 #include "runtime/wind/sph_wind.h"
 
 namespace liana {
 
 struct SceneObstacle {
   std::string name;
-  Mesh mesh;  ///< world frame, m
+  Mesh mesh;  ///< world frame, m: scaled, rotated and placed, before it moves
   Vec3 color;
   bool bricks;
+  ContactFeel feel;
+  std::optional<double> thickness;  ///< m, of the parts that have no inside
+  std::optional<ObstacleMotion> motion;
 };
 
 /// A plant from a bake, standing at a place.
@@ -70,6 +74,8 @@ struct Scene {
   Vec3 to_sun = {0.4, 0.8, 0.45};
   SceneWind wind;
   std::vector<SceneObstacle> obstacles;
+  bool plant_contacts = false;  ///< plants touch each other and themselves
+  ContactFeel plant_feel;
   std::vector<ScenePlant> plants;
   std::vector<SceneClimber> climbers;
   std::vector<ScenePluck> plucks;

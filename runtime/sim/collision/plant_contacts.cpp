@@ -17,14 +17,15 @@ struct ClosestPoints {
   double s, t;  // in [-1, 1] along each axis
 };
 
-/// Of the segments p + s u and q + t v ([Ericson 2005] §5.1.9, from their middles).
+/// Of the segments p + s u and q + t v, drawn a little to their middles: of nearly parallel ones the closest points
+/// would jump from end to end.
 ClosestPoints closest_points(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& v) {
   const Vec3 w = p - q;
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
-  const double area = uu * vv - uv * uv;
-  double s = area > 1e-9 * uu * vv ? std::clamp((uv * vw - vv * uw) / area, -1.0, 1.0) : 0.0;
+  constexpr double kDrawn = 0.01;
+  const double area = (1 + kDrawn) * (1 + kDrawn) * uu * vv - uv * uv;
+  const double s = std::clamp((uv * vw - (1 + kDrawn) * vv * uw) / area, -1.0, 1.0);
   const double t = std::clamp((vw + s * uv) / vv, -1.0, 1.0);
-  s = std::clamp((t * uv - uw) / uu, -1.0, 1.0);
   return {s, t};
 }
 
@@ -168,7 +169,8 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
   // The axes passed each other: what counts is the side that they came from.
   if (old != kNone && !memory.exempt && n.dot(memory.normal) < 0) n = -n, distance = -distance;
   const Particle &pa = plant_a.particles[a.particle], &pb = plant_b.particles[b.particle];
-  const double gap = distance - reach_along(pa, ma.orientation, n) - reach_along(pb, mb.orientation, n);
+  const double distance_at_touch = reach_along(pa, ma.orientation, n) + reach_along(pb, mb.orientation, n);
+  const double gap = distance - distance_at_touch;
 
   const auto is_new = [&](const Body& body) {
     return body.plant >= sizes_.size() || body.particle >= sizes_[body.plant];
@@ -183,7 +185,8 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
   memory.exempt = false;
   const double approach = velocity.dot(n);
   const double coming = std::min(0.0, dt * approach + dt * dt / 2 * acceleration.dot(n));
-  if (gap + coming >= 0) return;
+  // What has bounced leaves by itself.
+  if (gap + coming >= 0 || (options_.feel.elasticity > 0 && approach > kImpactSpeed)) return;
   ++report.contacts;
   report.max_overlap = std::max(report.max_overlap, -gap);
   memory.normal = n;
@@ -192,7 +195,11 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
   const double sum = std::max(pa.mass + pb.mass, 1e-12);
   const double share_a = std::clamp(pb.mass / sum, 1e-3, 1 - 1e-3);
   const double reduced = sum * share_a * (1 - share_a);
-  const double k = std::max(options_.stiffness_ratio * reduced / (dt * dt), options_.least_stiffness);
+  // Springs to the world resist the acceleration of what moves together like a mass of kΔt²: soft where a touch is
+  // light, hard where it would be deep. Depth counts by thickness.
+  const double depth = -(gap + coming) / (0.15 * (distance_at_touch + 1e-6));
+  const double ratio = std::min(options_.largest_ratio, options_.stiffness_ratio * (1 + depth * depth));
+  const double k = ratio * reduced / (dt * dt);
   const GeneralizedAlpha method(plant_a.scheme.rho_infinity);
   const double at_end = 1 - method.alpha_f;
 
@@ -219,7 +226,7 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
     spring.particle = ParticleId(body.particle);
     spring.on_particle = point;
     const double stiffness = k / share;
-    spring.target = body.centre + arm + at_end * share * sign * (way * n + friction.stretch);
+    spring.target = body.centre + arm + at_end * (share * sign * (way * n + friction.stretch) + dt * common.dot(n) * n);
     spring.stiffness = stiffness * along;
     spring.damping = stiffness * settling * along;
     spring.target_velocity = (method.alpha_f * own + at_end * common).dot(n) * n;
@@ -235,6 +242,7 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
       spring.damping += friction.dashpot / share * across;
       spring.target_velocity += flat(common);
     } else if (memory.grip.holds) {
+      spring.target += at_end * dt * flat(common);
       spring.stiffness += stiffness * across;
       spring.damping += stiffness * dt * across;
       spring.target_velocity += flat(method.alpha_f * own + at_end * common);

@@ -17,8 +17,8 @@ namespace liana {
 
 struct PlantContactOptions {
   ContactFeel feel;
-  double stiffness_ratio = 300;   ///< normal stiffness over reduced mass/Δt²
-  double least_stiffness = 500;   ///< N/m
+  double stiffness_ratio = 10;    ///< normal stiffness of a light touch over reduced mass/Δt²
+  double largest_ratio = 300;     ///< the same of a deep one, or of an impact
   double push_out_speed = 0.5;    ///< m/s, at which what is deep inside is moved out
   double margin = 6e-3;           ///< m that lists of neighbours look ahead at least
 };
