@@ -169,8 +169,8 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
   // The axes passed each other: what counts is the side that they came from.
   if (old != kNone && !memory.exempt && n.dot(memory.normal) < 0) n = -n, distance = -distance;
   const Particle &pa = plant_a.particles[a.particle], &pb = plant_b.particles[b.particle];
-  const double distance_at_touch = reach_along(pa, ma.orientation, n) + reach_along(pb, mb.orientation, n);
-  const double gap = distance - distance_at_touch;
+  const double thickness = reach_along(pa, ma.orientation, n) + reach_along(pb, mb.orientation, n);
+  const double gap = distance - thickness;
 
   const auto is_new = [&](const Body& body) {
     return body.plant >= sizes_.size() || body.particle >= sizes_[body.plant];
@@ -196,10 +196,10 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
   const double share_a = std::clamp(pb.mass / sum, 1e-3, 1 - 1e-3);
   const double reduced = sum * share_a * (1 - share_a);
   // Springs to the world resist the acceleration of what moves together like a mass of kΔt²: soft where a touch is
-  // light, hard where it would be deep. Depth counts by thickness.
-  const double depth = -(gap + coming) / (0.15 * (distance_at_touch + 1e-6));
-  const double ratio = std::min(options_.largest_ratio, options_.stiffness_ratio * (1 + depth * depth));
-  const double k = ratio * reduced / (dt * dt);
+  // light, hard where it would be deep. The force k₀δ (1 + d²), d the depth by thickness, with its own slope.
+  const double depth = std::min(-(gap + coming) / (0.15 * (thickness + 1e-6)), options_.deepest);
+  const double light = options_.stiffness_ratio * reduced / (dt * dt);
+  const double k = light * (1 + 3 * depth * depth), secant = light * (1 + depth * depth);
   const GeneralizedAlpha method(plant_a.scheme.rho_infinity);
   const double at_end = 1 - method.alpha_f;
 
@@ -209,7 +209,7 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
   if (!memory.grip.holds) memory.grip.on_a = point_a, memory.grip.on_b = point_b;
   const Vec3 slip = flat(ma.position + ma.orientation * memory.grip.on_a - mb.position -
                          mb.orientation * memory.grip.on_b);
-  const double limit = options_.feel.friction * at_end * k * std::max(0.0, -gap);
+  const double limit = options_.feel.friction * at_end * secant * std::max(0.0, -gap);
   const bool was_slipping = !memory.grip.holds;
   const FrictionAnswer friction =
       friction_answer(memory.grip, was_slipping ? Vec3::Zero() : slip, sliding, flat(acceleration), at_end * k,
@@ -217,6 +217,7 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
 
   const bool bounces = options_.feel.elasticity > 0 && approach < -kImpactSpeed;
   const double way = std::min(-gap, options_.push_out_speed * dt);  // to be gone by both together
+  const double push_out = way > 0 ? secant / k * way : way;
   const double settling = dt * std::clamp(1.25 - std::max(0.0, -approach) * dt / 4e-3, 0.25, 1.0);
   const Vec3 common = share_a * velocity_b + (1 - share_a) * velocity_a;
   const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
@@ -226,7 +227,7 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
     spring.particle = ParticleId(body.particle);
     spring.on_particle = point;
     const double stiffness = k / share;
-    spring.target = body.centre + arm + at_end * (share * sign * (way * n + friction.stretch) + dt * common.dot(n) * n);
+    spring.target = body.centre + arm + at_end * (share * sign * (push_out * n + friction.stretch) + dt * common.dot(n) * n);
     spring.stiffness = stiffness * along;
     spring.damping = stiffness * settling * along;
     spring.target_velocity = (method.alpha_f * own + at_end * common).dot(n) * n;

@@ -18,7 +18,7 @@ namespace liana {
 struct PlantContactOptions {
   ContactFeel feel;
   double stiffness_ratio = 10;    ///< normal stiffness of a light touch over reduced mass/Δt²
-  double largest_ratio = 300;     ///< the same of a deep one, or of an impact
+  double deepest = 5;             ///< times 0.15 of the thickness: what is deeper, or an impact, is no stiffer
   double push_out_speed = 0.5;    ///< m/s, at which what is deep inside is moved out
   double margin = 6e-3;           ///< m that lists of neighbours look ahead at least
 };
