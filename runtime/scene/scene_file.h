@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesher/base/mesh.h"
+#include "runtime/scene/obstacle_motion.h"
 #include "runtime/sim/plant.h"
 #include "runtime/wind/sph_wind.h"
 
@@ -14,9 +15,12 @@ namespace liana {
 
 struct SceneObstacle {
   std::string name;
-  Mesh mesh;  ///< world frame, m
+  Mesh mesh;  ///< world frame, m: scaled, rotated and placed, before it moves
   Vec3 color;
   bool bricks;
+  ContactFeel feel;
+  std::optional<double> thickness;  ///< m, of the parts that have no inside
+  std::optional<ObstacleMotion> motion;
 };
 
 /// A plant from a bake, standing at a place.
@@ -35,8 +39,8 @@ struct SceneClimber {
   size_t max_particles;
 };
 
-/// A branch or leaf is struck: its particles get a velocity that grows from nothing at its root with the square of
-/// the way to its tip (much like its lowest mode, so that it swings at its own frequency).
+/// A branch or leaf is struck: its particles get a velocity that grows from nothing at its root with the
+/// square of the way to its tip (much like its lowest mode, so that it swings at its own frequency).
 struct ScenePluck {
   size_t plant;        ///< which [[plant]], from 0
   std::string domain;  ///< name, or "#id", of a domain of its bake
@@ -53,7 +57,7 @@ struct SceneWind {
   double gust_period = 6;        ///< Gust: s, from one strong gust to the next, about
   AmbientParameters ambient;     ///< Ambient: mean and seed are set from this table and the scene
   std::optional<SphWindParameters> air;
-  bool show_air = false;         ///< draw the air particles
+  bool show_air = false;  ///< draw the air particles
 };
 
 struct SceneCamera {
@@ -72,6 +76,8 @@ struct Scene {
   Vec3 to_sun = {0.4, 0.8, 0.45};
   SceneWind wind;
   std::vector<SceneObstacle> obstacles;
+  bool plant_contacts = false;  ///< plants touch each other and themselves
+  ContactFeel plant_feel;
   std::vector<ScenePlant> plants;
   std::vector<SceneClimber> climbers;
   std::vector<ScenePluck> plucks;

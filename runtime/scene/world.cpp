@@ -12,6 +12,7 @@
 #include "mesher/base/nearest_word.h"
 #include "mesher/base/parallel.h"
 #include "mesher/base/stopwatch.h"
+#include "runtime/sim/collision/shells.h"
 #include "runtime/sim/plant_from_bake.h"
 #include "runtime/sim/state_hash.h"
 #include "runtime/view/air_drawing.h"
@@ -21,11 +22,24 @@ namespace {
 
 constexpr double kGroundHeight = 0;  // m: the ground is level, as the renderer draws it
 
-std::vector<std::unique_ptr<SdfObstacle>> obstacles_of(const Scene& scene) {
+/// owner: for each of them, which obstacle of the scene it belongs to.
+std::vector<std::unique_ptr<SdfObstacle>> obstacles_of(const Scene& scene, std::vector<size_t>& owner,
+                                                       std::vector<std::string>& notes) {
   std::vector<std::unique_ptr<SdfObstacle>> obstacles;
   for (const SceneObstacle& obstacle : scene.obstacles) {
     try {
-      obstacles.push_back(std::make_unique<SdfObstacle>(obstacle.mesh));
+      ShellOptions options{.feel = obstacle.feel};
+      options.thickness = obstacle.thickness.value_or(options.thickness);
+      Shells shells = obstacles_from(obstacle.mesh, options);
+      if (shells.sheets > 0 && !obstacle.thickness)
+        notes.push_back(fmt::format("obstacle '{}': {} of its {} pieces have no inside and count as sheets {} mm thick "
+                                    "('thickness' sets it)",
+                                    obstacle.name, shells.sheets, shells.solids + shells.sheets,
+                                    1e3 * options.thickness));
+      for (auto& shell : shells.obstacles) {
+        owner.push_back(&obstacle - scene.obstacles.data());
+        obstacles.push_back(std::move(shell));
+      }
     } catch (const Error& error) {
       throw Error(error.kind,
                   fmt::format("{}: obstacle '{}': {}", scene.file.string(), obstacle.name, error.what()),
@@ -46,8 +60,9 @@ std::vector<const SdfObstacle*> pointers_to(const std::vector<std::unique_ptr<Sd
 World::World(const Scene& scene, unsigned threads)
     : scene_(scene),
       threads_(threads),
-      obstacles_(obstacles_of(scene)),
+      obstacles_(obstacles_of(scene, obstacle_of_, notes_)),
       solids_(pointers_to(obstacles_)),
+      touching_({.feel = scene.plant_feel}),
       wind_(scene, solids_, kGroundHeight, threads) {
   for (const ScenePlant& entry : scene.plants) add_baked(entry);
   for (size_t i = 0; i < scene.climbers.size(); ++i) add_climber(scene.climbers[i], scene.seed + i);
@@ -128,11 +143,32 @@ void World::add_climber(const SceneClimber& entry, uint64_t seed) {
   inhabitants_.push_back(std::move(inhabitant));
 }
 
+void World::move_obstacles() {
+  for (size_t i = 0; i < obstacles_.size(); ++i)
+    if (const auto& motion = scene_.obstacles[obstacle_of_[i]].motion)
+      obstacles_[i]->place(motion->between(time(), time() + scene_.time_step));
+}
+
 void World::step() {
   const PhaseSeconds before = report().seconds;
+  move_obstacles();
+  // The air and other plants meet all plants at once, between their growth and their steps.
+  parallel_for(inhabitants_.size(), threads_, [&](size_t i, unsigned) {
+    inhabitants_[i]->springs.clear();
+    pluck(i);
+    grow(*inhabitants_[i]);
+  });
+  if (scene_.plant_contacts) {
+    all_plants_.clear();
+    all_springs_.clear();
+    for (const auto& inhabitant : inhabitants_) {
+      all_plants_.push_back(&inhabitant->plant);
+      all_springs_.push_back(&inhabitant->springs);
+    }
+    touching_seconds_ += timed([&] { touched_ = touching_.gather(all_plants_, all_springs_); });
+    max_overlap_ = std::max(max_overlap_, touched_.max_overlap);
+  }
   if (wind_.has_air()) {
-    // The air meets all plants at once, between their growth and their steps.
-    parallel_for(inhabitants_.size(), threads_, [&](size_t i, unsigned) { grow(*inhabitants_[i]); });
     in_wind_.clear();
     for (const auto& inhabitant : inhabitants_) in_wind_.push_back({&inhabitant->plant, inhabitant->growing});
     wind_.advance(in_wind_, time(), scene_.time_step);
@@ -142,7 +178,7 @@ void World::step() {
   ++steps_;
   const PhaseSeconds after = report().seconds;
   last_step_ = {after.growth - before.growth, after.collision - before.collision, after.physics - before.physics,
-                after.wind - before.wind};
+                after.touching - before.touching, after.wind - before.wind};
 }
 
 void World::grow(Inhabitant& self) {
@@ -156,14 +192,12 @@ void World::grow(Inhabitant& self) {
 void World::step_inhabitant(size_t index) {
   Inhabitant& self = *inhabitants_[index];
   WorldReport& report = self.report;
-  self.springs.clear();
-  pluck(index);
-  if (!wind_.has_air()) grow(self);
   const Stopwatch watch;
   wind_.add_to(index, self.plant, time(), self.springs, self.wrenches);
   if (grabbed_ && grabbed_->plant == index) self.springs.push_back(grabbed_->spring);
   const ContactStepReport done = self.stepper.step(self.plant, {solids_, kGroundHeight}, self.wrenches, self.springs,
                                                    {.dt = scene_.time_step, .gravity = scene_.gravity});
+  report.contacts = done.contacts.contacts;
   report.max_penetration = std::max(report.max_penetration, done.contacts.max_penetration);
   report.contact_passes += static_cast<size_t>(done.passes - 1);
   report.redone_steps += done.step.redone > 0;
@@ -184,8 +218,12 @@ DrawScene World::drawing(bool names) const {
 void World::add_to(DrawScene& scene, bool names) const {
   for (const auto& inhabitant : inhabitants_)
     add_plant(inhabitant->plant, inhabitant->look, {.names = names}, scene);
-  for (const SceneObstacle& obstacle : scene_.obstacles)
+  for (const SceneObstacle& obstacle : scene_.obstacles) {
     scene.meshes.push_back({obstacle.mesh, obstacle.color, obstacle.bricks, obstacle.name});
+    if (!obstacle.motion) continue;
+    const ObstaclePose pose = obstacle.motion->between(time(), time());
+    for (Vec3& p : scene.meshes.back().mesh.positions) p = pose.rotation * p + pose.position;
+  }
   scene.to_sun = scene_.to_sun.normalized();
   if (wind_.has_air() && scene_.wind.show_air) add_air(wind_.air()->air(), scene);
 }
@@ -214,6 +252,7 @@ WorldReport World::report() const {
     const WorldReport& own = inhabitant->report;
     total.particles += inhabitant->plant.particles.size();
     total.anchors += inhabitant->plant.anchors.size();
+    total.contacts += own.contacts;
     total.max_penetration = std::max(total.max_penetration, own.max_penetration);
     total.redone_steps += own.redone_steps;
     total.contact_passes += own.contact_passes;
@@ -223,6 +262,10 @@ WorldReport World::report() const {
     total.seconds.collision += own.seconds.collision;
     total.seconds.physics += own.seconds.physics;
   }
+  total.plant_contacts = touched_.contacts;
+  total.grown_together = touched_.exempt;
+  total.max_overlap = max_overlap_;
+  total.seconds.touching = touching_seconds_;
   total.seconds.wind = wind_.seconds();
   if (wind_.has_air()) total.air = wind_.air()->report();
   return total;
@@ -235,7 +278,7 @@ SimulationStats World::stats() const {
           .particles = now.particles,
           .anchors = now.anchors,
           .growth_ms = 1e3 * last_step_.growth,
-          .collision_ms = 1e3 * last_step_.collision,
+          .collision_ms = 1e3 * (last_step_.collision + last_step_.touching),
           .physics_ms = 1e3 * last_step_.physics,
           .wind_ms = 1e3 * last_step_.wind,
           .redone_steps = now.redone_steps};

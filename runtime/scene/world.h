@@ -9,6 +9,7 @@
 #include "runtime/scene/scene_file.h"
 #include "runtime/scene/world_wind.h"
 #include "runtime/sim/collision/contact_step.h"
+#include "runtime/sim/collision/plant_contacts.h"
 #include "runtime/view/camera.h"
 #include "runtime/view/plant_drawing.h"
 #include "runtime/view/simulation_view.h"
@@ -18,12 +19,17 @@ namespace liana {
 /// Seconds of work since the start, summed over threads.
 struct PhaseSeconds {
   double growth = 0, collision = 0, physics = 0;
-  double wind = 0;  ///< air particles; wall clock
+  double touching = 0;  ///< plants with plants; wall clock
+  double wind = 0;      ///< air particles; wall clock
 };
 
 /// What happened since the start.
 struct WorldReport {
   size_t steps = 0, particles = 0, anchors = 0;
+  size_t contacts = 0;               ///< with obstacles and the ground, in the last step
+  size_t plant_contacts = 0;         ///< pairs of particles that touched in the last step
+  size_t grown_together = 0;         ///< pairs that overlap since they were made, and do not push each other
+  double max_overlap = 0;            ///< m, of two plant parts that touch
   double max_penetration = 0;        ///< m, deepest that any particle ever was in an obstacle or the ground
   size_t redone_steps = 0;           ///< steps that the solver took again with finer substeps
   size_t contact_passes = 0;         ///< taken again because a contact showed only at the step's end
@@ -80,6 +86,7 @@ class World final : public Simulation {
   };
 
   double time() const { return static_cast<double>(steps_) * scene_.time_step; }
+  void move_obstacles();
   void add_baked(const ScenePlant& entry);
   void add_climber(const SceneClimber& entry, uint64_t seed);
   void grow(Inhabitant& self);
@@ -89,9 +96,16 @@ class World final : public Simulation {
   void add_to(DrawScene& scene, bool names) const;
 
   Scene scene_;
+  std::vector<std::string> notes_;
   unsigned threads_;
+  std::vector<size_t> obstacle_of_;  // of each solid, in the scene
   std::vector<std::unique_ptr<SdfObstacle>> obstacles_;
   std::vector<const SdfObstacle*> solids_;
+  PlantContacts touching_;
+  PlantContactReport touched_;
+  double max_overlap_ = 0, touching_seconds_ = 0;  // m, s
+  std::vector<const Plant*> all_plants_;
+  std::vector<std::vector<WorldSpring>*> all_springs_;
   WorldWind wind_;
   std::vector<std::unique_ptr<Inhabitant>> inhabitants_;
   std::vector<PlantInWind> in_wind_;
@@ -99,7 +113,6 @@ class World final : public Simulation {
   std::vector<Pluck> plucks_;
   size_t steps_ = 0;
   PhaseSeconds last_step_;
-  std::vector<std::string> notes_;
 };
 
 }  // namespace liana
