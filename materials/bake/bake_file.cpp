@@ -18,6 +18,7 @@ constexpr size_t kHeaderSize = 8 + 4 + 4 + 8 + 8;
 // a Reader, which fills them in.
 struct Writer {
   ByteWriter out;
+  uint32_t version = kBakeVersion;
   template <class Number>
   void number(const Number& value) {
     out.number(value);
@@ -31,6 +32,7 @@ struct Writer {
 
 struct Reader {
   ByteReader in;
+  uint32_t version;
   template <class Number>
   void number(Number& value) {
     value = in.number<Number>();
@@ -72,7 +74,9 @@ template <class Stream, class Group>
 void group(Stream& stream, Group& law) {
   const auto number = [&](const NumberRange&, auto& value) { stream.number(value); };
   for_each_number_of_group(law, number);
-  for_each_optional_number_of_group(law, number);
+  for_each_optional_number_of_group(law, [&](const NumberRange& range, auto& value) {
+    if (range.key != kModulusOfRupture || stream.version > 3) stream.number(value);
+  });
   flag(stream, law.damping.constant_rayleigh);
   for_each_number_of_damping(law.damping, number);
   match(stream, law.match);
@@ -173,8 +177,10 @@ Bake decode_bake(std::string_view bytes, const std::string& name) {
   ByteReader header(bytes, name);
   for (size_t i = 0; i < kMagic.size(); ++i) header.number<char>();
   const auto version = header.number<uint32_t>();
-  if (version != kBakeVersion)
-    refuse(name, fmt::format("is a bake of version {}; this program reads version {}", version, kBakeVersion),
+  if (version < kOldestBakeVersion || version > kBakeVersion)
+    refuse(name,
+           fmt::format("is a bake of version {}; this program reads versions {} to {}", version,
+                       kOldestBakeVersion, kBakeVersion),
            kBakeAgain);
   if (header.number<uint32_t>() != 0) refuse(name, "has a damaged header", kBakeAgain);
   const auto size = header.number<uint64_t>(), checksum = header.number<uint64_t>();
@@ -185,7 +191,7 @@ Bake decode_bake(std::string_view bytes, const std::string& name) {
     refuse(name, "has been changed: its checksum does not match", kBakeAgain);
 
   Bake bake;
-  Reader reader{ByteReader(body, name)};
+  Reader reader{ByteReader(body, name), version};
   payload(reader, bake);
   if (reader.in.left() != 0) reader.in.fail("goes on where it should end");
   check(bake, name);

@@ -11,7 +11,8 @@
 
 namespace liana {
 
-constexpr uint32_t kBakeVersion = 3;
+constexpr uint32_t kBakeVersion = 4;
+constexpr uint32_t kOldestBakeVersion = 3;  ///< without the modulus of rupture; still read
 
 /// Atomic: an existing file stays as it was until the new one is complete. Throws Error{Output}, or
 /// Error{Input} when the bake itself breaks a rule that read_bake checks.

@@ -17,6 +17,8 @@ struct NumberRange {
   double min, max;
 };
 
+inline constexpr const char* kModulusOfRupture = "modulus_of_rupture";
+
 /// visit(NumberRange, double&) for E, ρ and Poisson's ratio.
 template <class Material, class Visit>
 void for_each_number_of_material(Material& material, Visit&& visit) {
@@ -35,13 +37,14 @@ void for_each_number_of_group(Group& group, Visit&& visit) {
   visit(NumberRange{"epsilon2", "", -4, 4}, group.epsilon2);
 }
 
-/// visit(NumberRange, double&) for what a group may leave out: the median model's ν, and Eq. 11.
+/// visit(NumberRange, double&) for what a group may leave out: the median model's ν, Eq. 11, and what it bears.
 template <class Group, class Visit>
 void for_each_optional_number_of_group(Group& group, Visit&& visit) {
   visit(NumberRange{"median_frequency", "Hz", 0, 1e3}, group.median_frequency);
   visit(NumberRange{"s_max", "", 1e-3, 1e3}, group.taper.root_scaling);
   visit(NumberRange{"s_min", "", 1e-3, 1e3}, group.taper.tip_scaling);
   visit(NumberRange{"epsilon3", "", 0, 100}, group.taper.epsilon3);
+  visit(NumberRange{kModulusOfRupture, "Pa", 0, 1e10}, group.modulus_of_rupture);
 }
 
 /// visit(NumberRange, double&) for what the models beside the power law need; all may be left out.

@@ -51,6 +51,14 @@ DomainMaterial evaluate_at(const GroupLaw& law, double length, double frequency)
   return {frequency, mass_scaling_of_length(law, length), factor, rayleigh.mass, rayleigh.stiffness};
 }
 
+double modulus_of_rupture(const SpeciesLaw& law, const std::string& group) {
+  try {
+    return law.group(group).modulus_of_rupture;
+  } catch (const Error&) {
+    return 0;
+  }
+}
+
 const GroupLaw& SpeciesLaw::group(const std::string& name) const {
   if (const auto found = groups.find(name); found != groups.end()) return found->second;
   for (int level = level_of(name) - 1; level >= 0; --level) {

@@ -49,6 +49,7 @@ struct GroupLaw {
   double epsilon2 = 0;
   DampingLaw damping = {};
   double median_frequency = 0;  ///< ν_med, Hz, of the median model; 0: what Eq. 8 gives at the median length
+  double modulus_of_rupture = 0;   ///< Pa, bending stress at which it breaks; 0: not known
   GroupMatch match = {};
   TaperLaw taper = {};  ///< of stiffness and density along each domain; uniform unless given
 };
@@ -96,6 +97,9 @@ struct SpeciesLaw {
   /// or none does.
   std::string group_of(const std::string& name, DomainKind kind, int level, const std::string& given) const;
 };
+
+/// Pa, of a group; 0 when it is not known, or the law has no such group.
+double modulus_of_rupture(const SpeciesLaw& law, const std::string& group);
 
 /// [Wang17] Eq. 8, 9, 13, 15. length in m, > 0. Throws Error{Input} when there is no such material.
 DomainMaterial evaluate(const GroupLaw& law, double length);

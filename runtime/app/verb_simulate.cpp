@@ -76,6 +76,8 @@ std::string report_json(const World& world, double total_seconds, double render_
   json["contact_passes"] = report.contact_passes;
   json["reseated_joints"] = report.reseated_joints;
   json["lost_steps"] = report.lost_steps;
+  json["parts"] = {{"broken", report.broken}, {"shed", report.shed},     {"cut", report.cut},
+                   {"fallen", report.fallen}, {"asleep", report.asleep}, {"removed", report.removed}};
   json["seconds"] = {{"total", total_seconds},
                      {"physics", report.seconds.physics},
                      {"growth", report.seconds.growth},
@@ -109,6 +111,12 @@ void print_summary(const World& world, double total_seconds, double render_secon
     if (report.air->limited > 0)
       fmt::print("note: {} air velocities were cut to twice the speed of sound\n", report.air->limited);
   }
+  if (report.broken + report.shed + report.cut > 0)
+    fmt::print("came off: {} branches broke, {} leaves were shed, {} parts were cut; {} lie about ({} at rest)\n",
+               report.broken, report.shed, report.cut, report.fallen, report.asleep);
+  if (report.removed > 0)
+    fmt::print("note: {} fallen parts were taken away, at rest for their time or blown out of the scene\n",
+               report.removed);
   if (report.redone_steps > 0) fmt::print("note: {} steps were redone with finer substeps\n", report.redone_steps);
   if (report.reseated_joints > 0)
     fmt::print("note: {} joints were torn open and closed by hand\n", report.reseated_joints);

@@ -20,6 +20,7 @@ bool Anchors::attach(Plant& plant, ParticleId particle, const Surroundings& arou
   if (!support) return false;
 
   Record record;
+  record.particle = particle;
   record.away = motion.orientation.conjugate() * support->normal;
   record.along = 0;
   // Roots bridge the gap as it is: holding on does not pull.
@@ -70,6 +71,17 @@ void Anchors::update(Plant& plant, double dt_growth) {
   }
   records_.resize(kept);
   plant.anchors.resize(kept);
+}
+
+void Anchors::follow(const TopologyChange& change) {
+  std::vector<uint8_t> held;
+  for (size_t i = 0; i < held_.size(); ++i)
+    if (change.particles[i].valid()) held.push_back(held_[i]);
+  held_ = std::move(held);
+  std::erase_if(records_, [&](Record& record) {
+    record.particle = change.particles[record.particle.index()];
+    return !record.particle.valid();
+  });
 }
 
 }  // namespace liana

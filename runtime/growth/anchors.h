@@ -10,6 +10,7 @@
 #include "runtime/growth/climber_parameters.h"
 #include "runtime/growth/surroundings.h"
 #include "runtime/sim/plant.h"
+#include "runtime/sim/topology.h"
 
 namespace liana {
 
@@ -26,12 +27,16 @@ class Anchors {
   /// beyond the distance. Solids must stand where they will be at the end of the coming step.
   void update(Plant& plant, double dt_growth);
 
+  /// The plant lost particles, and its anchors with them.
+  void follow(const TopologyChange& change);
+
   bool holds(ParticleId particle) const { return particle.index() < held_.size() && held_[particle.index()]; }
   size_t count() const { return records_.size(); }
   size_t released() const { return released_; }  ///< so far
 
  private:
   struct Record {
+    ParticleId particle;
     Vec3 away;       // unit, particle's frame: from the surface to the axis
     double along;    // m along the axis from the centre
     double gap;      // m between stem and surface when it was made

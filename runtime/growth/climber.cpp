@@ -64,14 +64,15 @@ Climber::Climber(const ClimberParameters& parameters, const SpeciesLaw& law, con
 GrowthReport Climber::grow(Plant& plant, std::span<const SdfObstacle* const> obstacles, const Vec3& to_sun,
                            double dt) {
   const Surroundings around{obstacles, to_sun.normalized(), seed_.y()};
-  if (plant.particles.empty()) germinate(plant, around);
+  if (!germinated_) germinate(plant, around);
+  if (plant.particles.empty()) return {.released = anchors_.released()};  // all of it was cut
   const int parts = std::max(1, static_cast<int>(std::ceil(dt / kLongestStep - 1e-9)));
   for (int i = 0; i < parts; ++i) grow_once(plant, around, dt / parts);
   anchors_.update(plant, dt);
 
   GrowthReport report;
   recalibrate_changed(plant, report);
-  carry_grown_weight(plant, parameters_.gravity, rest_);
+  carry_grown_weight(plant, parameters_.weight_grown_in * parameters_.gravity, rest_);
   report.tips = std::count_if(shoots_.begin(), shoots_.end(), [](const Shoot& s) { return s.growing; });
   report.leaves = leaves_.count();
   report.anchors = anchors_.count();
@@ -80,6 +81,8 @@ GrowthReport Climber::grow(Plant& plant, std::span<const SdfObstacle* const> obs
 }
 
 void Climber::grow_once(Plant& plant, const Surroundings& around, double dt) {
+  for (size_t i = 0, count = shoots_.size(); i < count; ++i)
+    if (shoots_[i].lost_tip) break_bud_below_cut(plant, i, around);
   for (size_t i = 0; i < shoots_.size(); ++i)  // grows while it goes on
     if (shoots_[i].growing && grow_tip(plant, shoots_[i], parameters_, around, wander_, dt))
       finish_node(plant, i, around);
@@ -96,6 +99,7 @@ void Climber::grow_once(Plant& plant, const Surroundings& around, double dt) {
 // Every first shoot stands in the ground by itself, beside the others, and leans towards the support in a
 // fan.
 void Climber::germinate(Plant& plant, const Surroundings& around) {
+  germinated_ = true;
   const auto support = closest_support(around.obstacles, seed_, parameters_.tropisms.search_radius);
   Vec3 to_support = support ? Vec3(-support->normal) : Vec3::Zero();
   to_support.y() = 0;
@@ -124,6 +128,7 @@ void Climber::start_shoot(Plant& plant, const Attachment& at, BranchId parent, c
   branch.parent = parent;
   branch.level = parent.valid() ? plant.branches[parent.index()].level + 1 : 0;
   branch.group = "level" + std::to_string(branch.level);
+  branch.strength = parameters_.strength;
   shoot.branch = BranchId(plant.branches.size());
   plant.branches.push_back(branch);
   append_stem(plant, shoot, at, Quat::FromTwoVectors(Vec3::UnitY(), direction));
@@ -174,11 +179,13 @@ void Climber::finish_node(Plant& plant, size_t index, const Surroundings& around
   shoot.free_length =
       anchors_.attach(plant, node, around) ? 0 : shoot.free_length + parameters_.segment_length;
   shoot.light += (1 - occlusion(around.obstacles, head + 1e-3 * outward, around.to_sun) - shoot.light) / 3;
-  crowding_.add(head, branch);
+  crowding_.add(head, branch, node);
 
   if ((shoot.since_leaf += parameters_.segment_length) >= parameters_.leaves.step &&
       plant.particles.size() < parameters_.max_particles) {
-    leaves_.sprout(plant, shoot, node, support ? support->normal : outward, around, law_, leafing_);
+    const BranchId leaf =
+        leaves_.sprout(plant, shoot, node, support ? support->normal : outward, around, law_, leafing_);
+    plant.branches[leaf.index()].strength = parameters_.leaf_strength;
     shoot.since_leaf = 0;
     young_radius_.push_back(0);
     joint_length_.push_back(0);
@@ -194,6 +201,52 @@ void Climber::finish_node(Plant& plant, size_t index, const Surroundings& around
                   shoot.free_length < parameters_.longest_free && may_grow(plant, level);
   if (shoot.growing) append_stem(plant, shoot, here, plant.motion[node.index()].orientation);
   shoots_[index] = shoot;
+}
+
+void Climber::follow(const TopologyChange& change) {
+  std::erase_if(shoots_, [&](Shoot& shoot) {
+    shoot.branch = change.branches[shoot.branch.index()];
+    if (!shoot.branch.valid()) return true;
+    if (shoot.branch == change.shortened) {
+      shoot.growing = false;
+      shoot.lost_tip = true;
+    }
+    return false;
+  });
+  leaves_.follow(change);
+  anchors_.follow(change);
+  crowding_.follow(change);
+  const auto keep = [](auto& numbers, const auto& now) {
+    size_t kept = 0;
+    for (size_t i = 0; i < numbers.size(); ++i)
+      if (now[i].valid()) numbers[kept++] = numbers[i];
+    numbers.resize(kept);
+  };
+  keep(young_radius_, change.particles);
+  keep(joint_length_, change.particles);
+  keep(calibrated_, change.branches);
+}
+
+// The tip held the buds below it back; without it the last node's breaks.
+void Climber::break_bud_below_cut(Plant& plant, size_t index, const Surroundings& around) {
+  Shoot& shoot = shoots_[index];
+  shoot.lost_tip = false;
+  const Branch& branch = plant.branches[shoot.branch.index()];
+  const ParticleId node = branch.particles.back();
+  const Vec3 head = head_of(plant, node), forward = forward_of(plant, node);
+  const bool grown = 2 * plant.particles[node.index()].half_length >= parameters_.segment_length * (1 - 1e-9);
+  if (!grown || head.y() <= around.ground_height + parameters_.segment_length) return;
+  const auto support = closest_support(around.obstacles, head, parameters_.tropisms.search_radius);
+  BranchingParameters sure = parameters_.branching;
+  sure.probability = 1;
+  sure.max_laterals = 1;
+  const Shoot parent = shoot;  // start_shoot() moves the shoots
+  const int level = branch.level;
+  for (const Bud& bud : breaking_buds(parent, level, head, forward, outward_of(support, forward, around.to_sun),
+                                      sure, crowding_, branching_))
+    if (may_grow(plant, level + 2))
+      start_shoot(plant, {node, Vec3(0, plant.particles[node.index()].half_length, 0)}, parent.branch,
+                  bud.direction, {BranchId(), bud.tip_radius, bud.course, parent.longest / 2, parent.light});
 }
 
 // A few particles a step are looked at again: a stem that was blown against the wall takes root there.

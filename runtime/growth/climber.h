@@ -13,6 +13,7 @@
 #include "runtime/growth/segments.h"
 #include "runtime/growth/shoot_growth.h"
 #include "runtime/sim/calibration.h"
+#include "runtime/sim/topology.h"
 
 namespace liana {
 
@@ -26,7 +27,7 @@ struct GrowthReport {
 };
 
 /// Owns what growth needs to know besides the plant. One climber grows one plant, from empty, and is the only
-/// one that adds particles, branches or anchors to it. Deterministic: the same seed and calls grow the same
+/// one that adds particles, branches or anchors to it; it must hear of what others take away. Deterministic: the same seed and calls grow the same
 /// plant.
 class Climber {
  public:
@@ -40,6 +41,11 @@ class Climber {
   /// before.
   GrowthReport grow(Plant& plant, std::span<const SdfObstacle* const> obstacles, const Vec3& to_sun,
                     double dt_growth);
+
+  /// Between steps, after remove_subtree() or detach_subtree(): shoots and leaves that are gone are forgotten,
+  /// a shoot that lost its tip stops, and a lateral bud below the cut breaks, where there is room, as if it
+  /// had waited for that.
+  void follow(const TopologyChange& change);
 
   /// One flag per particle of the plant: 1 for tips and leaves that are not full-grown.
   void mark_growing(const Plant& plant, std::vector<uint8_t>& growing) const;
@@ -63,6 +69,7 @@ class Climber {
   void start_shoot(Plant& plant, const Attachment& at, BranchId parent, const Vec3& direction, Shoot shoot);
   ParticleId append_stem(Plant& plant, const Shoot& shoot, const Attachment& at, const Quat& orientation);
   void finish_node(Plant& plant, size_t shoot, const Surroundings& around);
+  void break_bud_below_cut(Plant& plant, size_t shoot, const Surroundings& around);
   void hold_on_again(Plant& plant, const Surroundings& around);
   void recalibrate_changed(Plant& plant, GrowthReport& report);
 
@@ -78,6 +85,7 @@ class Climber {
   std::vector<Calibrated> calibrated_;               // per branch
   HeldChain chain_;
   std::vector<Motion> rest_;
+  bool germinated_ = false;
   size_t next_hold_ = 0;        // particle looked at next for a new anchor
   size_t next_settled_ = 0;     // branch whose turn to be calibrated finely comes next
   double since_thickened_ = 0;  // growth s

@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "mesher/base/types.h"
+#include "runtime/sim/topology.h"
 
 namespace liana {
 
@@ -15,7 +15,20 @@ class Crowding {
  public:
   explicit Crowding(double cell) : cell_(cell) {}
 
-  void add(const Vec3& x, BranchId branch) { cells_[key(x)].push_back({x, branch}); }
+  /// `x` is where a particle of a branch is.
+  void add(const Vec3& x, BranchId branch, ParticleId particle) {
+    cells_[key(x)].push_back({x, branch, particle});
+  }
+
+  /// The plant lost particles: they take no room any more.
+  void follow(const TopologyChange& change) {
+    for (auto& [cell, entries] : cells_)
+      std::erase_if(entries, [&](Entry& entry) {
+        entry.particle = change.particles[entry.particle.index()];
+        entry.branch = change.branches[entry.branch.index()];
+        return !entry.particle.valid();
+      });
+  }
 
   /// Whether a point of a branch other than `own` is within `radius` (m, at most the cell).
   bool crowded(const Vec3& x, double radius, BranchId own) const {
@@ -35,6 +48,7 @@ class Crowding {
   struct Entry {
     Vec3 x;
     BranchId branch;
+    ParticleId particle;
   };
   Key key(const Vec3& x) const {
     return {static_cast<int>(std::floor(x.x() / cell_)), static_cast<int>(std::floor(x.y() / cell_)),

@@ -100,6 +100,18 @@ void Leaves::grow(Plant& plant, const Surroundings& around, double dt, const Spe
   }
 }
 
+void Leaves::follow(const TopologyChange& change) {
+  size_t kept = 0, kept_grown = 0;
+  for (size_t i = 0; i < leaves_.size(); ++i) {
+    leaves_[i].branch = change.branches[leaves_[i].branch.index()];
+    if (!leaves_[i].branch.valid()) continue;
+    kept_grown += i < first_growing_;
+    leaves_[kept++] = leaves_[i];
+  }
+  leaves_.resize(kept);
+  first_growing_ = kept_grown;
+}
+
 void Leaves::mark_growing(const Plant& plant, std::vector<uint8_t>& growing) const {
   for (size_t i = first_growing_; i < leaves_.size(); ++i)
     if (leaves_[i].age < parameters_.seconds_to_full)

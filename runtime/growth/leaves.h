@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "runtime/growth/shoot_growth.h"
+#include "runtime/sim/topology.h"
 
 namespace liana {
 
@@ -21,6 +22,9 @@ class Leaves {
 
   /// Sets the flags of the particles whose leaves are not full-grown.
   void mark_growing(const Plant& plant, std::vector<uint8_t>& growing) const;
+
+  /// The plant lost particles, and leaves with them.
+  void follow(const TopologyChange& change);
 
   size_t count() const { return leaves_.size(); }
 

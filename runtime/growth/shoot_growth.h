@@ -22,6 +22,7 @@ struct Shoot {
   double since_leaf = 0;   ///< m
   unsigned leaves = 0;
   bool growing = true;
+  bool lost_tip = false;  ///< since the last step of growth
 };
 
 /// Upwards along a surface of this outward normal, rotated by `course` about it: unit; zero where the surface

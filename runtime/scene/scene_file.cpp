@@ -5,6 +5,8 @@
 #include "materials/law/toml_table.h"
 #include "mesher/base/error.h"
 #include "mesher/io/plant_file.h"
+#include "runtime/growth/climber_parameters.h"
+#include "runtime/scene/scene_events.h"
 #include "runtime/scene/scene_wind.h"
 #include "runtime/sim/collision/box_mesh.h"
 
@@ -85,7 +87,7 @@ SceneObstacle read_obstacle(const TomlTable& table) {
 
 ScenePlant read_plant_entry(const TomlTable& table) {
   ScenePlant plant{existing_file(table, "bake"), table.vector_or("position", Vec3::Zero()),
-                   table.number_or("yaw", 0, -360, 360) * kPi / 180};
+                   table.number_or("yaw", 0, -360, 360) * kPi / 180, table.number_or("breaking", 0, 0, 1)};
   table.refuse_unknown_keys();
   return plant;
 }
@@ -109,6 +111,12 @@ SceneClimber read_climber(const TomlTable& table) {
   climber.position = table.vector("position");
   climber.growth_speed = table.number_or("growth_speed", 1, 0, 4);
   climber.max_particles = static_cast<size_t>(table.integer_or("max_particles", 4000, 1, 1'000'000));
+  climber.breaking = table.number_or("breaking", 0, 0, 1);
+  climber.stiffness = table.number_or("stiffness", 1, 1e-3, 1e3);
+  climber.weight_grown_in = table.number_or("weight_grown_in", 1, 0, 1);
+  climber.first_shoots =
+      static_cast<unsigned>(table.integer_or("first_shoots", ClimberParameters().first_shoots, 1, 64));
+  climber.longest_free = table.number_or("longest_free", ClimberParameters().longest_free, 0, 5);
   table.refuse_unknown_keys();
   return climber;
 }
@@ -154,6 +162,7 @@ Scene read_scene(const std::filesystem::path& path) {
   for (const TomlTable& entry : table.tables("climber")) scene.climbers.push_back(read_climber(entry));
   for (const TomlTable& entry : table.tables("pluck"))
     scene.plucks.push_back(read_pluck(entry, scene.plants.size()));
+  read_scene_events(table, scene);
   table.refuse_unknown_keys();
   if (scene.plants.empty() && scene.climbers.empty())
     throw Error(Error::Kind::Input, path.string() + ": the scene has no [[plant]] and no [[climber]]",

@@ -28,6 +28,7 @@ struct ScenePlant {
   std::filesystem::path bake;
   Vec3 position;
   double yaw;  ///< rad, about +Y
+  double breaking;  ///< t_s of [Haedrich17] in [0, 1]: 1 breaks as its wood does, 0 never
 };
 
 /// A climber that grows from a seed, with the law of a bake or of a species preset.
@@ -37,6 +38,11 @@ struct SceneClimber {
   Vec3 position;
   double growth_speed;  ///< multiple of the climber's normal pace
   size_t max_particles;
+  double breaking;         ///< as of a plant
+  double stiffness;        ///< multiple of what its law gives; frequencies go with the root
+  double weight_grown_in;  ///< share of its weight that does not bend it, for it grew under it
+  unsigned first_shoots;
+  double longest_free;  ///< m that a shoot grows without hold
 };
 
 /// A branch or leaf is struck: its particles get a velocity that grows from nothing at its root with the
@@ -46,6 +52,35 @@ struct ScenePluck {
   std::string domain;  ///< name, or "#id", of a domain of its bake
   double time;         ///< s
   Vec3 velocity;       ///< of the tip, m/s
+};
+
+/// A place on a plant or climber.
+struct ScenePoint {
+  bool climber;             ///< of [[climber]] rather than of [[plant]]
+  size_t index;             ///< which of these, from 0
+  std::string domain;       ///< of a plant: name, or "#id", of a domain; empty: `at`
+  double along = 0;         ///< in [0, 1], of that domain's length
+  Vec3 at = Vec3::Zero();   ///< m, world: the particle of a stem nearest to it when it is needed
+};
+
+/// What grows from a place is cut off.
+struct SceneCut {
+  ScenePoint where;
+  double time;  ///< s
+};
+
+/// A place is held and led along a path by a spring.
+struct SceneGrab {
+  ScenePoint where;
+  double time, seconds;    ///< s, from when, for how long
+  std::vector<Vec3> path;  ///< m, from where it was grabbed; passed at an even pace per leg
+  double strength;         ///< 1: a spring that the whole plant's weight would stretch by 2 cm
+};
+
+/// What becomes of broken and cut parts.
+struct SceneFallen {
+  double roots_hold = 2;    ///< s, for which a climber's cut off part still clings
+  double remove_after = 0;  ///< s at rest, after which a part is taken away; 0: never
 };
 
 /// The wind everywhere (none when the velocity is zero), and air particles that emitters blow.
@@ -81,6 +116,9 @@ struct Scene {
   std::vector<ScenePlant> plants;
   std::vector<SceneClimber> climbers;
   std::vector<ScenePluck> plucks;
+  std::vector<SceneCut> cuts;
+  std::vector<SceneGrab> grabs;
+  SceneFallen fallen;
   std::optional<SceneCamera> camera;  ///< absent: frame everything
 };
 

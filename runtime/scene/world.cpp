@@ -20,7 +20,8 @@
 namespace liana {
 namespace {
 
-constexpr double kGroundHeight = 0;  // m: the ground is level, as the renderer draws it
+constexpr size_t kMostBreaksAStep = 8;  // of one plant; what remains overloaded breaks in the next
+constexpr double kGroundHeight = 0;     // m: the ground is level, as the renderer draws it
 
 /// owner: for each of them, which obstacle of the scene it belongs to.
 std::vector<std::unique_ptr<SdfObstacle>> obstacles_of(const Scene& scene, std::vector<size_t>& owner,
@@ -32,10 +33,10 @@ std::vector<std::unique_ptr<SdfObstacle>> obstacles_of(const Scene& scene, std::
       options.thickness = obstacle.thickness.value_or(options.thickness);
       Shells shells = obstacles_from(obstacle.mesh, options);
       if (shells.sheets > 0 && !obstacle.thickness)
-        notes.push_back(fmt::format("obstacle '{}': {} of its {} pieces have no inside and count as sheets {} mm thick "
-                                    "('thickness' sets it)",
-                                    obstacle.name, shells.sheets, shells.solids + shells.sheets,
-                                    1e3 * options.thickness));
+        notes.push_back(fmt::format(
+            "obstacle '{}': {} of its {} pieces have no inside and count as sheets {} mm thick "
+            "('thickness' sets it)",
+            obstacle.name, shells.sheets, shells.solids + shells.sheets, 1e3 * options.thickness));
       for (auto& shell : shells.obstacles) {
         owner.push_back(&obstacle - scene.obstacles.data());
         obstacles.push_back(std::move(shell));
@@ -57,6 +58,17 @@ std::vector<const SdfObstacle*> pointers_to(const std::vector<std::unique_ptr<Sd
 
 }  // namespace
 
+void World::add(const WorldReport& own, WorldReport& total) {
+  total.max_penetration = std::max(total.max_penetration, own.max_penetration);
+  total.redone_steps += own.redone_steps;
+  total.contact_passes += own.contact_passes;
+  total.reseated_joints += own.reseated_joints;
+  total.lost_steps += own.lost_steps;
+  total.seconds.growth += own.seconds.growth;
+  total.seconds.collision += own.seconds.collision;
+  total.seconds.physics += own.seconds.physics;
+}
+
 World::World(const Scene& scene, unsigned threads)
     : scene_(scene),
       threads_(threads),
@@ -66,6 +78,8 @@ World::World(const Scene& scene, unsigned threads)
       wind_(scene, solids_, kGroundHeight, threads) {
   for (const ScenePlant& entry : scene.plants) add_baked(entry);
   for (size_t i = 0; i < scene.climbers.size(); ++i) add_climber(scene.climbers[i], scene.seed + i);
+  for (const SceneCut& cut : scene_.cuts) check_point(cut.where, "[[cut]]");
+  for (const SceneGrab& grab : scene_.grabs) check_point(grab.where, "[[grab]]");
 }
 
 void World::add_baked(const ScenePlant& entry) {
@@ -82,9 +96,16 @@ void World::add_baked(const ScenePlant& entry) {
   const std::string& name = inhabitant->plant.name;
   if (!calibration.note.empty()) notes_.push_back(name + ": " + calibration.note);
   if (!calibration.out_of_range.empty())
-    notes_.push_back(fmt::format("{}: {} of {} domains are too fast for a step of {} s and move as near as it can",
-                                 name, calibration.out_of_range.size(), calibration.branches, scene_.time_step));
+    notes_.push_back(
+        fmt::format("{}: {} of {} domains are too fast for a step of {} s and move as near as it can", name,
+                    calibration.out_of_range.size(), calibration.branches, scene_.time_step));
   inhabitant->look = plant_look(bake.law.species);
+  for (const BakedDomain& domain : bake.domains) inhabitant->domains.push_back(domain.name);
+  const size_t unknown = set_strengths(inhabitant->plant, bake.law, entry.breaking);
+  if (entry.breaking > 0 && unknown > 0)
+    notes_.push_back(
+        fmt::format("{}: {} branches and leaves have no modulus of rupture in their law: they do not break",
+                    name, unknown));
   inhabitants_.push_back(std::move(inhabitant));
   for (const ScenePluck& pluck : scene_.plucks)
     if (pluck.plant + 1 == inhabitants_.size()) add_pluck(pluck, bake);
@@ -103,10 +124,11 @@ void World::add_pluck(const ScenePluck& entry, const Bake& bake) {
   }
   if (!found)
     throw Error(Error::Kind::Input,
-                fmt::format("{}: [[pluck]] names '{}', but '{}' has no such branch or leaf", scene_.file.string(),
-                            entry.domain, plant.name),
+                fmt::format("{}: [[pluck]] names '{}', but '{}' has no such branch or leaf",
+                            scene_.file.string(), entry.domain, plant.name),
                 fmt::format("did you mean '{}'?", nearest_word(entry.domain, names)));
-  plucks_.push_back({entry.plant, *found, static_cast<size_t>(std::lround(entry.time / scene_.time_step)), entry.velocity});
+  plucks_.push_back(
+      {entry.plant, *found, static_cast<size_t>(std::lround(entry.time / scene_.time_step)), entry.velocity});
 }
 
 void World::pluck(size_t index) {
@@ -130,13 +152,24 @@ void World::pluck(size_t index) {
 
 void World::add_climber(const SceneClimber& entry, uint64_t seed) {
   auto inhabitant = std::make_unique<Inhabitant>();
-  const SpeciesLaw law = entry.bake.empty() ? read_species(entry.species) : read_bake(entry.bake).law;
+  SpeciesLaw law = entry.bake.empty() ? read_species(entry.species) : read_bake(entry.bake).law;
   inhabitant->plant.name = law.species;
   inhabitant->plant.scheme.dt = scene_.time_step;
   inhabitant->plant.scheme.solver = scene_.solver;
   ClimberParameters parameters;
   parameters.max_particles = entry.max_particles;
   parameters.gravity = scene_.gravity;
+  parameters.first_shoots = entry.first_shoots;
+  parameters.longest_free = entry.longest_free;
+  parameters.weight_grown_in = entry.weight_grown_in;
+  law.default_material.youngs_modulus *= entry.stiffness;
+  for (auto& [group, numbers] : law.groups) numbers.reference_frequency *= std::sqrt(entry.stiffness);
+  if (entry.breaking > 0) {
+    parameters.strength = modulus_of_rupture(law, "level0") / entry.breaking;
+    parameters.leaf_strength = modulus_of_rupture(law, "leaf") / entry.breaking;
+    if (parameters.strength == 0)
+      notes_.push_back(law.species + ": its law has no modulus of rupture: it does not break");
+  }
   inhabitant->climber.emplace(parameters, law, entry.position, seed);
   inhabitant->growth_speed = entry.growth_speed;
   inhabitant->look = plant_look(law.species);
@@ -151,6 +184,8 @@ void World::move_obstacles() {
 
 void World::step() {
   const PhaseSeconds before = report().seconds;
+  start_events();
+  lead_grabs();
   move_obstacles();
   // The air and other plants meet all plants at once, between their growth and their steps.
   parallel_for(inhabitants_.size(), threads_, [&](size_t i, unsigned) {
@@ -175,10 +210,12 @@ void World::step() {
   }
   parallel_for(inhabitants_.size(), threads_, [&](size_t i, unsigned) { step_inhabitant(i); });
   if (wind_.has_air()) wind_.react(in_wind_);
+  break_what_is_overloaded();
+  remove_parts();
   ++steps_;
   const PhaseSeconds after = report().seconds;
-  last_step_ = {after.growth - before.growth, after.collision - before.collision, after.physics - before.physics,
-                after.touching - before.touching, after.wind - before.wind};
+  last_step_ = {after.growth - before.growth, after.collision - before.collision,
+                after.physics - before.physics, after.touching - before.touching, after.wind - before.wind};
 }
 
 void World::grow(Inhabitant& self) {
@@ -192,11 +229,15 @@ void World::grow(Inhabitant& self) {
 void World::step_inhabitant(size_t index) {
   Inhabitant& self = *inhabitants_[index];
   WorldReport& report = self.report;
+  if (self.plant.particles.empty() || self.asleep()) return;
   const Stopwatch watch;
   wind_.add_to(index, self.plant, time(), self.springs, self.wrenches);
   if (grabbed_ && grabbed_->plant == index) self.springs.push_back(grabbed_->spring);
-  const ContactStepReport done = self.stepper.step(self.plant, {solids_, kGroundHeight}, self.wrenches, self.springs,
-                                                   {.dt = scene_.time_step, .gravity = scene_.gravity});
+  for (const ScriptedGrab& grab : scripted_)
+    if (grab.plant == index) self.springs.push_back(grab.spring);
+  const ContactStepReport done =
+      self.stepper.step(self.plant, {solids_, kGroundHeight}, self.wrenches, self.springs,
+                        {.dt = scene_.time_step, .gravity = scene_.gravity});
   report.contacts = done.contacts.contacts;
   report.max_penetration = std::max(report.max_penetration, done.contacts.max_penetration);
   report.contact_passes += static_cast<size_t>(done.passes - 1);
@@ -204,10 +245,14 @@ void World::step_inhabitant(size_t index) {
   report.reseated_joints += static_cast<size_t>(done.step.reseated);
   report.lost_steps += !done.step.finite;
   report.seconds.collision += done.collision_seconds;
+  find_fractures(self.plant, kMostBreaksAStep, self.fractures);
+  if (self.fallen) let_rest(self);
   report.seconds.physics += watch.seconds() - done.collision_seconds;
 }
 
-void World::draw(DrawScene& scene) const { add_to(scene, false); }
+void World::draw(DrawScene& scene) const {
+  add_to(scene, false);
+}
 
 DrawScene World::drawing(bool names) const {
   DrawScene scene;
@@ -243,29 +288,31 @@ Camera World::camera() const {
   return camera;
 }
 
-void World::set_grab(size_t plant, const WorldSpring& spring) { grabbed_ = Grab{plant, spring}; }
+void World::set_grab(size_t plant, const WorldSpring& spring) {
+  const bool same = grabbed_ && grabbed_->asked_plant == plant && grabbed_->asked_particle == spring.particle;
+  if (!same) grabbed_ = Grab{plant, spring, plant, spring.particle};
+  const ParticleId particle = grabbed_->spring.particle;
+  grabbed_->spring = spring;
+  grabbed_->spring.particle = particle;
+  inhabitants_[grabbed_->plant]->still_for = 0;  // wakes it
+}
 
 WorldReport World::report() const {
-  WorldReport total;
+  WorldReport total = departed_;
   total.steps = steps_;
   for (const auto& inhabitant : inhabitants_) {
-    const WorldReport& own = inhabitant->report;
     total.particles += inhabitant->plant.particles.size();
     total.anchors += inhabitant->plant.anchors.size();
-    total.contacts += own.contacts;
-    total.max_penetration = std::max(total.max_penetration, own.max_penetration);
-    total.redone_steps += own.redone_steps;
-    total.contact_passes += own.contact_passes;
-    total.reseated_joints += own.reseated_joints;
-    total.lost_steps += own.lost_steps;
-    total.seconds.growth += own.seconds.growth;
-    total.seconds.collision += own.seconds.collision;
-    total.seconds.physics += own.seconds.physics;
+    total.contacts += inhabitant->report.contacts;
+    total.fallen += inhabitant->fallen;
+    total.asleep += inhabitant->asleep();
+    add(inhabitant->report, total);
   }
   total.plant_contacts = touched_.contacts;
   total.grown_together = touched_.exempt;
   total.max_overlap = max_overlap_;
   total.seconds.touching = touching_seconds_;
+  total.broken = broken_, total.shed = shed_, total.cut = cut_, total.removed = removed_;
   total.seconds.wind = wind_.seconds();
   if (wind_.has_air()) total.air = wind_.air()->report();
   return total;

@@ -8,8 +8,10 @@
 #include "runtime/growth/climber.h"
 #include "runtime/scene/scene_file.h"
 #include "runtime/scene/world_wind.h"
+#include "runtime/sim/breaking.h"
 #include "runtime/sim/collision/contact_step.h"
 #include "runtime/sim/collision/plant_contacts.h"
+#include "runtime/sim/topology.h"
 #include "runtime/view/camera.h"
 #include "runtime/view/plant_drawing.h"
 #include "runtime/view/simulation_view.h"
@@ -36,6 +38,9 @@ struct WorldReport {
   std::optional<SphWindReport> air;  ///< absent without emitters
   size_t reseated_joints = 0;        ///< closed by hand where the finest substeps did not hold them
   size_t lost_steps = 0;             ///< steps that did not stay finite and were stopped
+  size_t broken = 0, shed = 0, cut = 0;  ///< branches and leaves that broke off, parts cut off
+  size_t fallen = 0, asleep = 0;         ///< such parts that are there now, and how many of them lie still
+  size_t removed = 0;                    ///< taken away: after their time at rest, or blown out of the scene
   PhaseSeconds seconds;
 };
 
@@ -52,6 +57,8 @@ class World final : public Simulation {
   const Plant& plant(size_t i) const override { return inhabitants_[i]->plant; }
   void set_grab(size_t plant, const WorldSpring& spring) override;
   void clear_grab() override { grabbed_.reset(); }
+  /// Cuts a particle and all that grows from it off. It becomes the last of the plants, and falls.
+  void cut(size_t plant, ParticleId particle) override;
   SimulationStats stats() const override;
 
   /// As draw(), with every branch and leaf named when `names`.
@@ -69,10 +76,17 @@ class World final : public Simulation {
     std::optional<Climber> climber;
     double growth_speed = 1;
     PlantLook look;
-    std::vector<WorldSpring> springs;  // wind, grab and contacts of the step
-    std::vector<Wrench> wrenches;      // the air's pressure
-    std::vector<uint8_t> growing;      // per particle, of a climber
+    std::vector<WorldSpring> springs;      // wind, grab and contacts of the step
+    std::vector<Wrench> wrenches;          // the air's pressure
+    std::vector<uint8_t> growing;          // per particle, of a climber
+    std::vector<std::string> domains;      // of its bake: names by DomainId
+    std::vector<Fracture> fractures;       // of the last step
+    bool fallen = false;                   // broken or cut off
+    double fallen_for = 0, still_for = 0;  // s
+    std::vector<Vec3> lay;                 // m, where a part's particles were when it last moved
     WorldReport report;
+
+    bool asleep() const;
   };
   struct Pluck {
     size_t plant;
@@ -83,6 +97,14 @@ class World final : public Simulation {
   struct Grab {
     size_t plant;
     WorldSpring spring;
+    size_t asked_plant;  // as the caller knows it: the particle may have moved to a fallen part since
+    ParticleId asked_particle;
+  };
+  struct ScriptedGrab {
+    size_t plant;
+    WorldSpring spring;
+    Vec3 from;  // m, where it was grabbed
+    const SceneGrab* script;
   };
 
   double time() const { return static_cast<double>(steps_) * scene_.time_step; }
@@ -94,6 +116,16 @@ class World final : public Simulation {
   void pluck(size_t index);
   void step_inhabitant(size_t index);
   void add_to(DrawScene& scene, bool names) const;
+  static void add(const WorldReport& own, WorldReport& total);
+  // world_parts.cpp
+  void check_point(const ScenePoint& point, const char* table) const;
+  std::optional<std::pair<size_t, ParticleId>> find(const ScenePoint& point) const;
+  void start_events();
+  void lead_grabs();
+  void break_what_is_overloaded();
+  void take_off(size_t index, ParticleId particle);
+  void let_rest(Inhabitant& part) const;
+  void remove_parts();
 
   Scene scene_;
   std::vector<std::string> notes_;
@@ -110,6 +142,9 @@ class World final : public Simulation {
   std::vector<std::unique_ptr<Inhabitant>> inhabitants_;
   std::vector<PlantInWind> in_wind_;
   std::optional<Grab> grabbed_;
+  std::vector<ScriptedGrab> scripted_;
+  size_t broken_ = 0, shed_ = 0, cut_ = 0, removed_ = 0;
+  WorldReport departed_;  // what happened to parts that were removed
   std::vector<Pluck> plucks_;
   size_t steps_ = 0;
   PhaseSeconds last_step_;

@@ -62,6 +62,7 @@ struct WorldSpring {
 
 /// A chain of particles with one material: a baked domain, a growing shoot, or a leaf.
 struct Branch {
+  static constexpr uint32_t kNoShade = ~uint32_t{0};
   BranchId parent;  ///< invalid for a trunk
   DomainKind kind = DomainKind::Branch;
   int level = 0;
@@ -71,6 +72,8 @@ struct Branch {
   double length = 0;                  ///< ℓ, m: what the law is evaluated with
   DomainMaterial material;            ///< target: what calibration makes it swing like
   double stiffness_scale = 1;  ///< k*/ω₁² of the last calibration, of the physical joint stiffnesses
+  uint32_t shade = kNoShade;   ///< what its look varies with, once ids have changed
+  double strength = 0;         ///< Pa that its joints bear (see breaking.h); 0: it never breaks
 };
 
 /// Direct: PlantStepper's own; ShapeMatching: [Haedrich17]'s scheme, which no material drives (shape_matching.h).

@@ -55,6 +55,16 @@ Plant copy_of(const Plant& plant, std::span<const ParticleId> taken, DetachedFro
   return piece;
 }
 
+// Leaves vary in look by their particle's id, stems by their own: what is seen must not change with them.
+void remember_shades(Plant& plant) {
+  for (uint32_t b = 0; b < plant.branches.size(); ++b) {
+    Branch& branch = plant.branches[b];
+    if (branch.shade != Branch::kNoShade) continue;
+    const bool leaf = branch.kind == DomainKind::Leaf && !branch.particles.empty();
+    branch.shade = leaf ? branch.particles.front().value : b;
+  }
+}
+
 double length_of(const Plant& plant, std::span<const ParticleId> particles) {
   double length = 0;
   for (const ParticleId p : particles) length += 2 * plant.particles[p.index()].half_length;
@@ -95,6 +105,7 @@ BranchId append_branch(Plant& plant, Branch branch, ParticleId at, std::span<con
 }
 
 TopologyChange remove_subtree(Plant& plant, ParticleId root) {
+  remember_shades(plant);
   TopologyChange change;
   const std::vector<bool> gone = mark_subtree(plant, root, [](size_t) {});
   const size_t count = plant.particles.size(), branch_count = plant.branches.size();
@@ -134,6 +145,7 @@ TopologyChange remove_subtree(Plant& plant, ParticleId root) {
     ++branches;
   }
   plant.branches.resize(branches);
+  change.shortened = change.branches[cut.index()];
   if (branches < branch_count)
     for (Particle& particle : plant.particles) particle.branch = change.branches[particle.branch.index()];
 
@@ -145,6 +157,7 @@ TopologyChange remove_subtree(Plant& plant, ParticleId root) {
 }
 
 Plant detach_subtree(Plant& plant, ParticleId root, TopologyChange* change, DetachedFrom* from) {
+  remember_shades(plant);
   DetachedFrom origin;
   mark_subtree(plant, root, [&](size_t i) { origin.particles.push_back(ParticleId(i)); });
   Plant piece = copy_of(plant, origin.particles, origin);

@@ -15,6 +15,7 @@ namespace liana {
 struct TopologyChange {
   std::vector<ParticleId> particles;
   std::vector<BranchId> branches;
+  BranchId shortened;  ///< new id of the branch that was cut through; invalid if none kept a lower part
 };
 
 /// A chain that grows from `at`: fills in parent, branch and ids. particles[i] is held by the one before, the

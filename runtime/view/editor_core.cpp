@@ -90,6 +90,9 @@ void EditorCore::on(const KeyEvent& event) {
     case Key::Stats:
       stats_shown_ = !stats_shown_;
       break;
+    case Key::Cut:
+      cut();
+      break;
     case Key::Quit:
       quit_wanted_ = true;
       break;
@@ -108,6 +111,17 @@ bool EditorCore::try_grab(double x, double y) {
   spring_ = grab_spring(simulation_.plant(grab_->plant), *grab_, simulation_.time_step());
   simulation_.set_grab(grab_->plant, spring_);
   return true;
+}
+
+void EditorCore::cut() {
+  const auto pick = pick_particle(simulation_, scene().meshes, camera_, mouse_x_, mouse_y_, width_, height_);
+  if (!pick) return;
+  if (drag_ == Drag::Grab) {  // the ids that it holds may change
+    release_grab();
+    drag_ = Drag::None;
+  }
+  simulation_.cut(pick->plant, pick->particle);
+  world_changed_ = scene_is_old_ = true;
 }
 
 void EditorCore::move_grab(double x, double y) {

@@ -12,7 +12,7 @@
 namespace liana {
 
 enum class MouseButton : uint8_t { Left, Middle, Right };
-enum class Key : uint8_t { Pause, Step, FrameAll, Stats, Quit };
+enum class Key : uint8_t { Pause, Step, FrameAll, Stats, Cut, Quit };
 
 /// Positions are pixels of the picture, from the upper left corner.
 struct ButtonEvent {
@@ -80,6 +80,7 @@ class EditorCore {
   bool try_grab(double x, double y);
   void move_grab(double x, double y);
   void release_grab();
+  void cut();
   void step();
   void frame_all();
   const DrawScene& scene();

@@ -55,7 +55,7 @@ void draw_help(const OverlayText& text, float margin, float height) {
     ImGui::TextUnformatted(
         text.grabbing ? "drag to bend the plant, let go to release it"
                       : "drag a branch: bend it | drag elsewhere or middle: orbit | shift or right: pan | "
-                        "wheel: zoom | space: pause | . step | F frame all | S numbers | Q quit");
+                        "wheel: zoom | space: pause | . step | X cut | F frame all | S numbers | Q quit");
   }
   ImGui::End();
 }

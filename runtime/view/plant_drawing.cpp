@@ -96,6 +96,7 @@ Vec3 stem_color(const PlantLook& look, double radius, uint32_t id) {
 
 DrawLeaf blade_of(const PlantView& view, const Branch& branch, const PlantLook& look) {
   const ParticleId first = branch.particles.front(), last = branch.particles.back();
+  const uint32_t shade_id = branch.shade == Branch::kNoShade ? first.value : branch.shade;
   DrawLeaf leaf;
   leaf.outline = look.outline;
   leaf.base = view.tail(first);
@@ -109,12 +110,12 @@ DrawLeaf blade_of(const PlantView& view, const Branch& branch, const PlantLook& 
   // The turn between the middles of the first and the last particle, continued to base and tip.
   const double count = double(branch.particles.size());
   const double bend = count > 1 ? std::atan2(-tip_way.z(), tip_way.y()) * count / (count - 1) : 0;
-  const double at_rest = look.leaf_curl * (1 + 0.5 * variation(first.value, 2));
+  const double at_rest = look.leaf_curl * (1 + 0.5 * variation(shade_id, 2));
   leaf.curl = at_rest + bend;
   // Turned back by half of what the first particle's own length bends, so the blade lies along the particles.
   const double back = (at_rest + bend / count) / 2;
   leaf.orientation = base * Quat(Eigen::AngleAxisd(back, Vec3::UnitX()));
-  const double shade = 1 + 0.28 * variation(first.value, 3), yellow = 0.5 + 0.5 * variation(first.value, 4);
+  const double shade = 1 + 0.28 * variation(shade_id, 3), yellow = 0.5 + 0.5 * variation(shade_id, 4);
   leaf.color = shade * look.leaf.cwiseProduct(Vec3(1 + 0.35 * yellow, 1 + 0.08 * yellow, 1));
   return leaf;
 }
@@ -148,7 +149,7 @@ void add_plant(const Plant& plant, const PlantLook& look, const PlantDrawingOpti
     if (branch.kind == DomainKind::Branch) {
       DrawTube tube;
       smooth_into(knots_of(view, branch), options.points_per_particle, tube);
-      tube.color = stem_color(look, view.radius(first), i);
+      tube.color = stem_color(look, view.radius(first), branch.shade == Branch::kNoShade ? i : branch.shade);
       if (options.names) tube.name = fmt::format("{} branch {}", plant.name, i);
       scene.tubes.push_back(std::move(tube));
       continue;

@@ -25,6 +25,8 @@ class Simulation {
   /// Holds a point of one plant until cleared; the spring is kept over steps and replaced by the next call.
   virtual void set_grab(size_t plant, const WorldSpring& spring) = 0;
   virtual void clear_grab() = 0;
+  /// Cuts a particle and all that grows from it off. Other particles and plants may be renumbered.
+  virtual void cut(size_t plant, ParticleId particle) = 0;
   virtual SimulationStats stats() const = 0;
 };
 

@@ -96,6 +96,8 @@ std::optional<Key> key_of(int code) {
       return Key::FrameAll;
     case GLFW_KEY_S:
       return Key::Stats;
+    case GLFW_KEY_X:
+      return Key::Cut;
     case GLFW_KEY_ESCAPE:
     case GLFW_KEY_Q:
       return Key::Quit;

@@ -7,6 +7,7 @@
 
 #include "mesher/base/parallel.h"
 #include "mesher/base/stopwatch.h"
+#include "runtime/sim/breaking.h"
 #include "runtime/sim/generalized_alpha.h"
 #include "runtime/sim/plant_from_bake.h"
 #include "runtime/sim/time_step.h"
@@ -265,6 +266,17 @@ void change_one_branch(benchmark::State& state) {
   state.counters["step_us"] = 1e6 * step;
 }
 BENCHMARK(change_one_branch)->Iterations(20)->Unit(benchmark::kMicrosecond);
+
+// What it costs each step to ask 25,000 joints whether they break; none does.
+void look_for_fractures(benchmark::State& state) {
+  Plant plant = tree_of(25000);
+  for (Branch& branch : plant.branches) branch.strength = 1e12;
+  std::vector<Fracture> found;
+  double best = 1e9;
+  for (auto _ : state) best = std::min(best, best_seconds(5, [&] { find_fractures(plant, 8, found); }));
+  state.counters["ns_per_particle"] = 1e9 * best / static_cast<double>(plant.particles.size());
+}
+BENCHMARK(look_for_fractures)->Iterations(10)->Unit(benchmark::kMicrosecond);
 
 void recalibrate_branch(benchmark::State& state) {
   Plant plant = test::rod_plant({}, static_cast<int>(state.range(0)));

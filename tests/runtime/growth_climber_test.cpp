@@ -121,6 +121,69 @@ TEST(Climber, FastGrowthIsCutIntoSmallSteps) {
   EXPECT_NEAR(highest(fast.plant), highest(slow.plant), 0.15);
 }
 
+void cut(ClimberScene& scene, ParticleId at) {
+  const TopologyChange change = remove_subtree(scene.plant, at);
+  scene.climber.follow(change);
+  scene.stepper.follow(change);
+}
+
+TEST(Climber, GrowsOnWhereItWasNotCut) {
+  ClimberScene scene(sparse());
+  scene.run(12);
+  // The longest first shoot is cut in its middle, another shoot off at its root, a leaf off.
+  const Plant& plant = scene.plant;
+  const ParticleId middle = plant.branches[0].particles[plant.branches[0].particles.size() / 2];
+  cut(scene, middle);
+  const double stump = plant.branches[0].length;
+  const size_t stump_particles = plant.branches[0].particles.size(), left = plant.particles.size();
+  for (size_t b = plant.branches.size(); b-- > 0;) {
+    if (plant.branches[b].level != 0 || b == 0) continue;
+    cut(scene, plant.branches[b].particles.front());
+    break;
+  }
+  for (const Branch& branch : plant.branches)
+    if (branch.kind == DomainKind::Leaf) {
+      cut(scene, branch.particles.front());
+      break;
+    }
+  EXPECT_LT(plant.particles.size(), left);
+  const size_t before = plant.particles.size();
+  const double height = highest(plant);
+  scene.run(14);
+  EXPECT_TRUE(scene.sound);
+  EXPECT_EQ(plant.branches[0].particles.size(), stump_particles) << "a shoot without its tip is no longer one";
+  EXPECT_NEAR(plant.branches[0].length, stump, 1e-9);
+  EXPECT_GT(plant.particles.size(), before + 50) << "the others go on";
+  EXPECT_GT(highest(plant), height + 0.3);
+  bool lateral = false;
+  for (const Branch& branch : plant.branches)
+    lateral = lateral || (branch.kind == DomainKind::Branch && branch.parent == BranchId(0) &&
+                          plant.particles[branch.particles.front().index()].parent ==
+                              plant.branches[0].particles.back());
+  EXPECT_TRUE(lateral) << "a bud below the cut";
+  EXPECT_EQ(scene.growth.anchors, plant.anchors.size());
+  size_t leaves = 0;
+  for (const Branch& branch : plant.branches) leaves += branch.kind == DomainKind::Leaf;
+  EXPECT_EQ(scene.growth.leaves, leaves);
+}
+
+TEST(Climber, SurvivesHundredsOfCutsAndItsEnd) {
+  ClimberScene scene(sparse());
+  Random random(3, "cuts");
+  for (int i = 0; i < 300; ++i) {
+    scene.run(0.05);
+    if (i % 2 == 0) continue;
+    const auto at = static_cast<size_t>(random.uniform() * double(scene.plant.particles.size()));
+    if (scene.plant.particles[at].parent.valid()) cut(scene, ParticleId(at));
+  }
+  EXPECT_TRUE(scene.sound);
+  EXPECT_LT(scene.max_speed, 3) << "m/s";
+  while (!scene.plant.particles.empty()) cut(scene, ParticleId(0));
+  const GrowthReport report = scene.climber.grow(scene.plant, scene.obstacles(), {0, 1, 0}, 0.025);
+  EXPECT_EQ(report.tips, 0u);
+  EXPECT_TRUE(scene.plant.particles.empty()) << "it does not germinate again";
+}
+
 TEST(Climber, RefusesNonsense) {
   ClimberParameters parameters;
   parameters.segment_length = -1;

@@ -77,12 +77,14 @@ class FakeSimulation : public Simulation {
   const Plant& plant(size_t) const override { return plant_; }
   void set_grab(size_t, const WorldSpring& grab) override { grab_ = grab; }
   void clear_grab() override { grab_.reset(); }
+  void cut(size_t, ParticleId particle) override { cuts.push_back(particle); }
   SimulationStats stats() const override {
     return {.time = 0.025 * double(steps_), .steps = steps_, .particles = plant_.particles.size()};
   }
 
   const std::optional<WorldSpring>& grab() const { return grab_; }
-  DrawScene backdrop;  ///< drawn behind the plant
+  DrawScene backdrop;            ///< drawn behind the plant
+  std::vector<ParticleId> cuts;  ///< asked for so far
 
  private:
   Plant plant_;

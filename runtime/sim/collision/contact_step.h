@@ -28,6 +28,9 @@ class ContactStepper {
   ContactStepReport step(Plant& plant, const CollisionScene& scene, std::span<const Wrench> external,
                          std::vector<WorldSpring>& springs, const StepOptions& options);
 
+  /// The plant lost particles.
+  void follow(const TopologyChange& change) { contacts_.follow(change); }
+
   Contacts& contacts() { return contacts_; }
 
  private:

@@ -24,18 +24,16 @@ void Contacts::notice_new_particles(const Plant& plant, const CollisionScene& sc
     if (found.gap < -1e-3) inside[found.particle - known] = 1;
   for (size_t i = known; i < plant.particles.size(); ++i) {
     const ParticleId parent = plant.particles[i].parent;
-    exempt_.push_back(!parent.valid() || (inside[i - known] && exempt_[parent.index()]));
+    const bool held = !plant.particles[i].joint.shear_stiffness.isZero(0);
+    exempt_.push_back(parent.valid() ? inside[i - known] && exempt_[parent.index()] : held);
   }
 }
 
-void Contacts::rename(std::span<const ParticleId> change) {
-  std::vector<uint8_t> exempt;
-  for (size_t i = 0; i < std::min(change.size(), exempt_.size()); ++i) {
-    if (!change[i].valid()) continue;
-    exempt.resize(std::max(exempt.size(), change[i].index() + 1), 0);
-    exempt[change[i].index()] = exempt_[i];
-  }
-  exempt_ = std::move(exempt);
+void Contacts::follow(const TopologyChange& change) {
+  size_t kept = 0;
+  for (size_t i = 0; i < exempt_.size() && i < change.particles.size(); ++i)
+    if (change.particles[i].valid()) exempt_[kept++] = exempt_[i];
+  exempt_.resize(kept);
   made_.clear();
 }
 

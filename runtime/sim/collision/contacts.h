@@ -1,7 +1,7 @@
 // Contacts of a plant with obstacles and the ground, as springs to the world for the next time step.
 //
-// A contact is made when a point is inside, or will be by the end of the step. Contacts that last remember where
-// they hold on: what rests neither slides nor creeps.
+// A contact is made when a point is inside, or will be by the end of the step. Contacts that last remember
+// where they hold on: what rests neither slides nor creeps.
 #pragma once
 
 #include <span>
@@ -10,6 +10,7 @@
 #include "runtime/sim/collision/contact_feel.h"
 #include "runtime/sim/collision/probes.h"
 #include "runtime/sim/plant.h"
+#include "runtime/sim/topology.h"
 
 namespace liana {
 
@@ -41,11 +42,11 @@ class Contacts {
   size_t gather_missed(const Plant& after, std::span<const Motion> before, const CollisionScene& scene,
                        double tolerance, std::vector<WorldSpring>& springs);
 
+  /// The plant lost particles: what is known of the others goes with them.
+  void follow(const TopologyChange& change);
+
   /// Only looks: the report of the present state, with no springs.
   ContactReport measure(const Plant& plant, const CollisionScene& scene);
-
-  /// After particles were taken away: old id → new id, invalid for what is gone (see topology.h).
-  void rename(std::span<const ParticleId> change);
 
  private:
   struct Made {
@@ -54,11 +55,12 @@ class Contacts {
     bool operator<(const Made& other) const { return key < other.key; }
   };
   void notice_new_particles(const Plant& plant, const CollisionScene& scene);
-  WorldSpring spring(const Plant& plant, const Motion& motion, const Gap& found, double to_surface, Grip& grip) const;
+  WorldSpring spring(const Plant& plant, const Motion& motion, const Gap& found, double to_surface,
+                     Grip& grip) const;
 
   ContactOptions options_;
   Probes probes_;
-  std::vector<uint8_t> exempt_;     // per particle
+  std::vector<uint8_t> exempt_;      // per particle
   std::vector<Made> made_, before_;  // sorted: the contacts that have a spring in this step; in the last one
 };
 

@@ -72,6 +72,30 @@ bool PlantContacts::list_holds(std::span<const Plant* const> plants) const {
   return true;
 }
 
+void PlantContacts::follow(uint32_t plant, const TopologyChange& change) {
+  std::erase_if(memory_, [&](Memory& m) {
+    for (uint64_t* name : {&m.a, &m.b}) {
+      if (*name >> 32 != plant) continue;
+      const ParticleId now = change.particles[*name & kNone];
+      if (!now.valid()) return true;
+      *name = uint64_t{plant} << 32 | now.index();
+    }
+    return false;
+  });
+  sizes_.clear();  // the list is made anew
+}
+
+void PlantContacts::forget(uint32_t plant) {
+  std::erase_if(memory_, [&](Memory& m) {
+    for (uint64_t* name : {&m.a, &m.b}) {
+      if (*name >> 32 == plant) return true;
+      if (*name >> 32 > plant) *name -= uint64_t{1} << 32;
+    }
+    return false;
+  });
+  sizes_.clear();
+}
+
 // Neighbours in the tree share a joint or nearly so.
 bool PlantContacts::near_kin(std::span<const Plant* const> plants, uint32_t a, uint32_t b) const {
   if (bodies_[a].plant != bodies_[b].plant) return false;
