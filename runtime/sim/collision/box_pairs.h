@@ -19,8 +19,9 @@ struct FlatBox {
   }
 };
 
-/// Owns the working memory: keep it. Every box is entered in the cells that it overlaps; boxes far larger than
-/// most (trunks) are held against all others instead. The order of the pairs is a function of the boxes alone.
+/// Owns the working memory: keep it. Every box is entered in the cells that it overlaps; boxes far larger
+/// than most (trunks) are held against all others instead. The order of the pairs is a function of the boxes
+/// alone.
 class BoxPairs {
  public:
   using Pair = std::pair<uint32_t, uint32_t>;  ///< first < second
@@ -37,8 +38,8 @@ class BoxPairs {
   using Cell = Eigen::Vector3i;
   Cell cell_of(const Eigen::Vector3f& x) const { return (x * per_cell_).array().floor().cast<int>(); }
   size_t bucket_of(const Cell& c) const {
-    const auto hash = static_cast<uint32_t>(c.x()) * 0x8da6b343u + static_cast<uint32_t>(c.y()) * 0xd8163841u +
-                      static_cast<uint32_t>(c.z()) * 0xcb1ab31fu;
+    const auto hash = static_cast<uint32_t>(c.x()) * 0x8da6b343u +
+                      static_cast<uint32_t>(c.y()) * 0xd8163841u + static_cast<uint32_t>(c.z()) * 0xcb1ab31fu;
     return (hash ^ hash >> 15) & mask_;
   }
   void sort_into_cells(std::span<const FlatBox> boxes);
@@ -68,7 +69,8 @@ void BoxPairs::find(std::span<const FlatBox> boxes, const Wanted& wanted, std::v
   for (size_t i = 0; i < large_.size(); ++i) {
     for (uint32_t other = 0; other < boxes.size(); ++other) {
       // Two large ones meet once, at the earlier.
-      const bool met = std::binary_search(large_.begin(), large_.begin() + static_cast<ptrdiff_t>(i) + 1, other);
+      const bool met =
+          std::binary_search(large_.begin(), large_.begin() + static_cast<ptrdiff_t>(i) + 1, other);
       if (!met && boxes[large_[i]].meets(boxes[other])) offer(large_[i], other);
     }
   }

@@ -28,12 +28,14 @@ struct FrictionAnswer {
 };
 
 /// Coulomb's law for the next step. slip: from where the contact holds on to where it is now, m; velocity and
-/// acceleration: of the slip; all tangential. stiffness: of the tangential spring at rest, N/m; limit: friction
-/// times normal force, N; mass: kg, what a step of dt moves at least. Decides whether `grip` goes on holding.
+/// acceleration: of the slip; all tangential. stiffness: of the tangential spring at rest, N/m; limit:
+/// friction times normal force, N; mass: kg, what a step of dt moves at least. Decides whether `grip` goes on
+/// holding.
 ///
 /// A dashpot of limit/|v| is Coulomb's force for the velocity v that the step ends with; v is foreseen.
-inline FrictionAnswer friction_answer(Grip& grip, const Vec3& slip, const Vec3& velocity, const Vec3& acceleration,
-                                      double stiffness, double limit, double mass, double dt) {
+inline FrictionAnswer friction_answer(Grip& grip, const Vec3& slip, const Vec3& velocity,
+                                      const Vec3& acceleration, double stiffness, double limit, double mass,
+                                      double dt) {
   constexpr double kSlow = 2e-3;  // m/s
   if (grip.holds) {
     const double pull = stiffness * slip.norm();

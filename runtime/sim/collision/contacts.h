@@ -1,7 +1,7 @@
 // Contacts of a plant with obstacles and the ground, as springs to the world for the next time step.
 //
-// A contact is made when a point is inside, or will be by the end of the step. Contacts that last remember where
-// they hold on: what rests neither slides nor creeps.
+// A contact is made when a point is inside, or will be by the end of the step. Contacts that last remember
+// where they hold on: what rests neither slides nor creeps.
 #pragma once
 
 #include <span>
@@ -54,11 +54,12 @@ class Contacts {
     bool operator<(const Made& other) const { return key < other.key; }
   };
   void notice_new_particles(const Plant& plant, const CollisionScene& scene);
-  WorldSpring spring(const Plant& plant, const Motion& motion, const Gap& found, double to_surface, Grip& grip) const;
+  WorldSpring spring(const Plant& plant, const Motion& motion, const Gap& found, double to_surface,
+                     Grip& grip) const;
 
   ContactOptions options_;
   Probes probes_;
-  std::vector<uint8_t> exempt_;     // per particle
+  std::vector<uint8_t> exempt_;      // per particle
   std::vector<Made> made_, before_;  // sorted: the contacts that have a spring in this step; in the last one
 };
 

@@ -1,4 +1,5 @@
-// An obstacle as a signed distance field: fast values near the surface, exact closest points anywhere; it may move.
+// An obstacle as a signed distance field: fast values near the surface, exact closest points anywhere; it may
+// move.
 #pragma once
 
 #include <array>
@@ -32,8 +33,8 @@ struct ObstaclePose {
   Vec3 angular_velocity = Vec3::Zero();  ///< rad/s
 };
 
-/// m: a third of the thickness that volume over surface stands for, at most 1/128 of the longest side; at least
-/// 2 mm, and so that the band takes about a hundred thousand samples.
+/// m: a third of the thickness that volume over surface stands for, at most 1/128 of the longest side; at
+/// least 2 mm, and so that the band takes about a hundred thousand samples.
 double geometric_voxel(const Mesh& mesh, double sheet);
 
 /// Bricks of 8³ voxels, kept only near the surface. Within the band the error is below a tenth of a voxel,
@@ -49,12 +50,14 @@ class SdfObstacle {
   double distance(const Vec3& x) const { return sample(x).distance; }
   SdfSample sample(const Vec3& x) const;
 
-  /// Moves it. Scaling and shear belong into the mesh, where distances stay exact. All questions and answers are
-  /// in the world's frame.
+  /// Moves it. Scaling and shear belong into the mesh, where distances stay exact. All questions and answers
+  /// are in the world's frame.
   void place(const ObstaclePose& pose);
   const ObstaclePose& pose() const { return pose_; }
   bool moves() const { return moves_; }  ///< its pose has a velocity
-  Vec3 velocity_at(const Vec3& x) const { return pose_.velocity + pose_.angular_velocity.cross(x - pose_.centre); }
+  Vec3 velocity_at(const Vec3& x) const {
+    return pose_.velocity + pose_.angular_velocity.cross(x - pose_.centre);
+  }
   Vec3 to_mesh(const Vec3& x) const { return placed_ ? Vec3(back_ * (x - pose_.position)) : x; }
   Vec3 to_world(const Vec3& x) const { return placed_ ? Vec3(back_.transpose() * x + pose_.position) : x; }
 
