@@ -12,7 +12,8 @@
 namespace liana {
 namespace {
 
-const Quat kAlongX(Eigen::AngleAxisd(-kPi / 2, Vec3::UnitZ())), kAlongZ(Eigen::AngleAxisd(kPi / 2, Vec3::UnitX()));
+const Quat kAlongX(Eigen::AngleAxisd(-kPi / 2, Vec3::UnitZ())),
+    kAlongZ(Eigen::AngleAxisd(kPi / 2, Vec3::UnitX()));
 
 /// One free particle: 20 cm long, 5 mm in radius.
 Plant free_stick(const Vec3& position, const Quat& orientation, double mass, const Vec3& velocity) {
@@ -61,7 +62,8 @@ struct Together {
   Vec3 momentum() const {
     Vec3 sum = Vec3::Zero();
     for (const Plant& plant : plants)
-      for (size_t i = 0; i < plant.particles.size(); ++i) sum += plant.particles[i].mass * plant.motion[i].velocity;
+      for (size_t i = 0; i < plant.particles.size(); ++i)
+        sum += plant.particles[i].mass * plant.motion[i].velocity;
     return sum;
   }
 };
@@ -93,8 +95,8 @@ TEST(PlantContacts, PressedTogetherTheyDoNotPass) {
   two.plants.push_back(free_stick({0, -0.0051, 0}, kAlongZ, 0.01, Vec3::Zero()));
   const double force = 0.5;  // N: five times the weight of each
   for (int i = 0; i < 200; ++i) two.step({{{.force = {0, -force, 0}}}, {{.force = {0, force, 0}}}});
-  // 10 times 5 g over the step squared is 80 N/m for a touch; at a quarter of the thickness it is 3.8 times that, of
-  // which the time step takes 0.625: 0.47 N.
+  // 10 times 5 g over the step squared is 80 N/m for a touch; at a quarter of the thickness it is 3.8 times
+  // that, of which the time step takes 0.625: 0.47 N.
   const double depth = 0.01 - (two.plants[0].motion[0].position - two.plants[1].motion[0].position).y();
   EXPECT_GT(depth, 0);
   EXPECT_LT(depth, 5e-3);
@@ -135,7 +137,8 @@ TEST(PlantContacts, ARodPushedAgainstItsNeighbourBendsIt) {
   for (int i = 0; i < 2400; ++i) {
     two.step({push, {}});
     if (i > 1200)
-      closest = std::min(closest, (two.plants[1].motion[tip].position - two.plants[0].motion[tip].position).x());
+      closest =
+          std::min(closest, (two.plants[1].motion[tip].position - two.plants[0].motion[tip].position).x());
   }
   EXPECT_GT(two.touched, 100u);
   EXPECT_GT(two.plants[1].motion[tip].position.x(), 0.03) << "the neighbour is pushed aside";
@@ -205,7 +208,9 @@ TEST(PlantContacts, NeighboursAreFoundWhateverTheirSizes) {
   // Against all pairs, one by one.
   std::vector<FlatBox> boxes;
   uint32_t state = 1;
-  const auto random = [&] { return static_cast<float>((state = state * 1664525u + 1013904223u) >> 8) * 0x1p-24f; };
+  const auto random = [&] {
+    return static_cast<float>((state = state * 1664525u + 1013904223u) >> 8) * 0x1p-24f;
+  };
   for (int i = 0; i < 600; ++i) {
     const Eigen::Vector3f centre(random(), random(), random());
     const float half = i % 100 == 0 ? 0.4f : 0.01f + 0.03f * random();
@@ -213,7 +218,8 @@ TEST(PlantContacts, NeighboursAreFoundWhateverTheirSizes) {
   }
   std::vector<BoxPairs::Pair> found, expected;
   BoxPairs finder;
-  finder.find(boxes, [](uint32_t, uint32_t) { return true; }, found);
+  finder.find(
+      boxes, [](uint32_t, uint32_t) { return true; }, found);
   for (uint32_t i = 0; i < boxes.size(); ++i)
     for (uint32_t j = i + 1; j < boxes.size(); ++j)
       if (boxes[i].meets(boxes[j])) expected.emplace_back(i, j);

@@ -178,7 +178,8 @@ TEST(SdfObstacle, OfAScaledAndTurnedBoxIsItsAnalyticDistance) {
     }
     EXPECT_TRUE((x.array() >= box.low().array() - 0.3).all());
     if (exact < 0) {
-      EXPECT_TRUE((x.array() >= box.low().array() - 1e-9).all() && (x.array() <= box.high().array() + 1e-9).all());
+      EXPECT_TRUE((x.array() >= box.low().array() - 1e-9).all() &&
+                  (x.array() <= box.high().array() + 1e-9).all());
     }
   }
 }
@@ -201,7 +202,8 @@ TEST(Shells, ClosedPiecesAreSolidAndOpenOnesSheets) {
   const auto add = [&](const Mesh& more) {
     const auto first = static_cast<uint32_t>(mesh.positions.size());
     mesh.positions.insert(mesh.positions.end(), more.positions.begin(), more.positions.end());
-    for (const Triangle& t : more.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (const Triangle& t : more.triangles)
+      mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   };
   add(box_mesh({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}));  // overlaps the first
   Mesh open = box_mesh({3, 0, 0}, {4, 1, 1});
@@ -212,7 +214,8 @@ TEST(Shells, ClosedPiecesAreSolidAndOpenOnesSheets) {
   EXPECT_EQ(shells.sheets, 1u);
   ASSERT_EQ(shells.obstacles.size(), 3u);
   double nearest = 1;
-  for (const auto& o : shells.obstacles) nearest = std::min(nearest, o->closest_point({0.75, 0.75, 0.75}).distance);
+  for (const auto& o : shells.obstacles)
+    nearest = std::min(nearest, o->closest_point({0.75, 0.75, 0.75}).distance);
   EXPECT_NEAR(nearest, -0.25, 1e-9);
   EXPECT_GT(shells.obstacles[2]->distance({3.5, 0.5, 0.5}), 0) << "an open box is hollow";
 }

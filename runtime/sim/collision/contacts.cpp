@@ -8,8 +8,8 @@
 namespace liana {
 namespace {
 
-constexpr double kImpact = 1e-3;       // m a step, beyond which an approach is an impact
-constexpr double kImpactSpeed = 0.1;   // m/s, beyond which elasticity shows
+constexpr double kImpact = 1e-3;      // m a step, beyond which an approach is an impact
+constexpr double kImpactSpeed = 0.1;  // m/s, beyond which elasticity shows
 
 }  // namespace
 
@@ -68,8 +68,9 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, const Gap
   }
   const Vec3 hold = (found.solid ? found.solid->to_world(grip.on_b) : grip.on_b) - dt * surface;
   const Vec3 slip = across * (motion.position + motion.orientation * grip.on_a - hold);
-  const double pressing = std::max(at_end * k * std::max(0.0, -found.gap),
-                                   mass * std::max(0.0, -approach - std::max(0.0, found.gap) / dt) / dt);  // N
+  const double pressing =
+      std::max(at_end * k * std::max(0.0, -found.gap),
+               mass * std::max(0.0, -approach - std::max(0.0, found.gap) / dt) / dt);  // N
   const FrictionAnswer friction = friction_answer(grip, slip, across * velocity, across * motion.acceleration,
                                                   at_end * k, feel.friction * pressing, mass, dt);
 
@@ -125,8 +126,7 @@ ContactReport Contacts::gather(const Plant& plant, const CollisionScene& scene,
     while (last != before_.end() && last->key < found.key) ++last;
     Made made{found.key, {}};
     if (last != before_.end() && last->key == found.key) made.grip = last->grip;
-    springs.push_back(
-        spring(plant, motion, found, found.gap - dt * surface.dot(found.normal), made.grip));
+    springs.push_back(spring(plant, motion, found, found.gap - dt * surface.dot(found.normal), made.grip));
     made_.push_back(made);
     ++report.contacts;
   }

@@ -9,16 +9,16 @@
 namespace liana {
 namespace {
 
-constexpr double kApart = 5e-4;         // m, beyond which an exempt pair counts as come apart
-constexpr double kImpactSpeed = 0.1;    // m/s, beyond which elasticity shows
-constexpr float kRounding = 1e-5f;      // m, that single precision may take from a box
+constexpr double kApart = 5e-4;       // m, beyond which an exempt pair counts as come apart
+constexpr double kImpactSpeed = 0.1;  // m/s, beyond which elasticity shows
+constexpr float kRounding = 1e-5f;    // m, that single precision may take from a box
 
 struct ClosestPoints {
   double s, t;  // in [-1, 1] along each axis
 };
 
-/// Of the segments p + s u and q + t v, drawn a little to their middles: of nearly parallel ones the closest points
-/// would jump from end to end.
+/// Of the segments p + s u and q + t v, drawn a little to their middles: of nearly parallel ones the closest
+/// points would jump from end to end.
 ClosestPoints closest_points(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& v) {
   const Vec3 w = p - q;
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
@@ -54,7 +54,8 @@ void PlantContacts::look_at(std::span<const Plant* const> plants) {
       const Eigen::Vector3f centre = m.position.cast<float>();
       const Eigen::Vector3f half =
           axis.cwiseAbs().cast<float>().array() + (radius + static_cast<float>(way) + kRounding);
-      bodies_.push_back({m.position, axis, radius, k, i});
+      const bool blade = plant.branches[particle.branch.index()].kind == DomainKind::Leaf;
+      bodies_.push_back({m.position, axis, radius, k, i, blade});
       boxes_.push_back({centre - half, centre + half});
     }
   }
@@ -115,15 +116,21 @@ void PlantContacts::rebuild(std::span<const Plant* const> plants) {
   for (const Plant* plant : plants)
     for (size_t i = 0; i < plant->particles.size(); ++i, ++body) {
       // The box holds one step's way already; the list is to last for several.
-      const auto more = static_cast<float>(options_.margin + 3 * plant->scheme.dt * plant->motion[i].velocity.norm());
+      const auto more =
+          static_cast<float>(options_.margin + 3 * plant->scheme.dt * plant->motion[i].velocity.norm());
       listed_[body].low.array() -= more;
       listed_[body].high.array() += more;
     }
   pairs_.clear();
   pairs_finder_.find(
-      listed_, [&](uint32_t a, uint32_t b) { return !near_kin(plants, a, b); }, pairs_);
+      listed_,
+      [&](uint32_t a, uint32_t b) {
+        return !bodies_[a].blade && !bodies_[b].blade && !near_kin(plants, a, b);
+      },
+      pairs_);
 
-  std::sort(memory_.begin(), memory_.end(), [](const Memory& a, const Memory& b) { return a.key() < b.key(); });
+  std::sort(memory_.begin(), memory_.end(),
+            [](const Memory& a, const Memory& b) { return a.key() < b.key(); });
   remembered_.assign(bodies_.size(), 0);
   std::vector<size_t> first(plants.size(), 0);
   for (size_t k = 1; k < plants.size(); ++k) first[k] = first[k - 1] + plants[k - 1]->particles.size();
@@ -219,8 +226,9 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
   const double sum = std::max(pa.mass + pb.mass, 1e-12);
   const double share_a = std::clamp(pb.mass / sum, 1e-3, 1 - 1e-3);
   const double reduced = sum * share_a * (1 - share_a);
-  // Springs to the world resist the acceleration of what moves together like a mass of kΔt²: soft where a touch is
-  // light, hard where it would be deep. The force k₀δ (1 + d²), d the depth by thickness, with its own slope.
+  // Springs to the world resist the acceleration of what moves together like a mass of kΔt²: soft where a
+  // touch is light, hard where it would be deep. The force k₀δ (1 + d²), d the depth by thickness, with its
+  // own slope.
   const double depth = std::min(-(gap + coming) / (0.15 * (thickness + 1e-6)), options_.deepest);
   const double light = options_.stiffness_ratio * reduced / (dt * dt);
   const double k = light * (1 + 3 * depth * depth), secant = light * (1 + depth * depth);
@@ -231,13 +239,12 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
   const auto flat = [&](const Vec3& x) { return Vec3(x - x.dot(n) * n); };
   const Vec3 point_a = ma.orientation.conjugate() * arm_a, point_b = mb.orientation.conjugate() * arm_b;
   if (!memory.grip.holds) memory.grip.on_a = point_a, memory.grip.on_b = point_b;
-  const Vec3 slip = flat(ma.position + ma.orientation * memory.grip.on_a - mb.position -
-                         mb.orientation * memory.grip.on_b);
+  const Vec3 slip =
+      flat(ma.position + ma.orientation * memory.grip.on_a - mb.position - mb.orientation * memory.grip.on_b);
   const double limit = options_.feel.friction * at_end * secant * std::max(0.0, -gap);
   const bool was_slipping = !memory.grip.holds;
-  const FrictionAnswer friction =
-      friction_answer(memory.grip, was_slipping ? Vec3::Zero() : slip, sliding, flat(acceleration), at_end * k,
-                      limit, reduced, dt);
+  const FrictionAnswer friction = friction_answer(memory.grip, was_slipping ? Vec3::Zero() : slip, sliding,
+                                                  flat(acceleration), at_end * k, limit, reduced, dt);
 
   const bool bounces = options_.feel.elasticity > 0 && approach < -kImpactSpeed;
   const double way = std::min(-gap, options_.push_out_speed * dt);  // to be gone by both together
@@ -251,7 +258,8 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
     spring.particle = ParticleId(body.particle);
     spring.on_particle = point;
     const double stiffness = k / share;
-    spring.target = body.centre + arm + at_end * (share * sign * (push_out * n + friction.stretch) + dt * common.dot(n) * n);
+    spring.target = body.centre + arm +
+                    at_end * (share * sign * (push_out * n + friction.stretch) + dt * common.dot(n) * n);
     spring.stiffness = stiffness * along;
     spring.damping = stiffness * settling * along;
     spring.target_velocity = (method.alpha_f * own + at_end * common).dot(n) * n;

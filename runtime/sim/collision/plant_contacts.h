@@ -1,5 +1,6 @@
 // Contacts between plants, and of a plant with itself, as pairs of springs for the next time step.
 //
+// Stems only: blades are as thin as paper, overlap as they grow, and touch obstacles alone.
 // A particle is a capsule about its axis, with the elliptical cross-section's own reach towards the other as
 // radius. Both particles of a pair are drawn to where the two would meet if only they moved: the lighter one
 // goes most of the way. At rest and for free particles the two pushes are equal and opposite; plants are
@@ -52,6 +53,7 @@ class PlantContacts {
     Vec3 centre, axis;  // m; axis: half the length
     float radius;       // m, the largest
     uint32_t plant, particle;
+    bool blade;
   };
   struct Memory {   // of a pair that touches
     uint64_t a, b;  // plant << 32 | particle

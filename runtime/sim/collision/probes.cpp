@@ -7,9 +7,9 @@
 namespace liana {
 namespace {
 
-constexpr size_t kAtOnce = 32;    // neighbours in the arrays are neighbours in space
-constexpr double kSlow = 5e-3;    // m a step, below which the solid is a half space
-constexpr double kTouch = 2e-4;   // m, at which a sweep has arrived
+constexpr size_t kAtOnce = 32;   // neighbours in the arrays are neighbours in space
+constexpr double kSlow = 5e-3;   // m a step, below which the solid is a half space
+constexpr double kTouch = 2e-4;  // m, at which a sweep has arrived
 
 /// A plane that touches a solid where it is closest to a point.
 struct Nearest {
@@ -45,8 +45,8 @@ double travel_of(const Particle& particle, const Motion& motion, double dt) {
                dt * motion.acceleration.norm() / 2);
 }
 
-/// Where on its axis, in [-1, 1], a particle is nearest to a solid, when that is neither an end nor the middle. The
-/// distance to a convex solid along a line is convex.
+/// Where on its axis, in [-1, 1], a particle is nearest to a solid, when that is neither an end nor the
+/// middle. The distance to a convex solid along a line is convex.
 std::optional<double> thin_between(const Particle& particle, const Motion& motion, const SdfObstacle& solid,
                                    const Vec3& shift, double reach) {
   const Vec3 axis = motion.orientation * Vec3(0, particle.half_length, 0), centre = motion.position + shift;
@@ -58,7 +58,8 @@ std::optional<double> thin_between(const Particle& particle, const Motion& motio
   double low = head < tail ? 0 : -1, high = low + 1;
   if (mid < head && mid < tail) low = -1, high = 1;
   constexpr double kGolden = 0.61803398874989485;
-  double a = high - kGolden * (high - low), b = low + kGolden * (high - low), da = distance(a), db = distance(b);
+  double a = high - kGolden * (high - low), b = low + kGolden * (high - low), da = distance(a),
+         db = distance(b);
   for (int i = 0; i < 9; ++i) {
     if (da < db) {
       high = b, b = a, db = da, a = high - kGolden * (high - low), da = distance(a);
@@ -73,7 +74,8 @@ std::optional<double> thin_between(const Particle& particle, const Motion& motio
 
 }  // namespace
 
-const std::vector<Gap>& Probes::look(const Plant& plant, const CollisionScene& scene, double dt, size_t first) {
+const std::vector<Gap>& Probes::look(const Plant& plant, const CollisionScene& scene, double dt,
+                                     size_t first) {
   gaps_.clear();
   for (size_t i = first; i < plant.particles.size(); i += kAtOnce)
     look(plant, scene, dt, i, std::min(i + kAtOnce, plant.particles.size()));
@@ -97,7 +99,8 @@ void Probes::look(const Plant& plant, const CollisionScene& scene, double dt, si
     const double way = dt * (solid.pose().velocity.norm() +
                              solid.pose().angular_velocity.norm() *
                                  (half.norm() + (solid.low() + half - solid.pose().centre).norm()));
-    if ((solid.low().array() - way <= high.array()).all() && (low.array() <= solid.high().array() + way).all())
+    if ((solid.low().array() - way <= high.array()).all() &&
+        (low.array() <= solid.high().array() + way).all())
       near_.push_back(s);
   }
   const double ground = scene.ground_height.value_or(-std::numeric_limits<double>::infinity());
@@ -123,8 +126,8 @@ void Probes::look(const Plant& plant, const CollisionScene& scene, double dt, si
   }
 }
 
-void Probes::at(const Plant& plant, size_t i, uint64_t probe, double along, double dt, const SdfObstacle* solid,
-                uint64_t number, double ground) {
+void Probes::at(const Plant& plant, size_t i, uint64_t probe, double along, double dt,
+                const SdfObstacle* solid, uint64_t number, double ground) {
   const Particle& particle = plant.particles[i];
   const Motion& motion = plant.motion[i];
   const bool blade = plant.branches[particle.branch.index()].kind == DomainKind::Leaf;
@@ -163,8 +166,8 @@ void Probes::at(const Plant& plant, size_t i, uint64_t probe, double along, doub
   // Beside an edge the solid is no half space: what counts is the distance of the point itself.
   const Nearest found = nearest_to(x + motion.orientation * arm);
   if (found.distance > reach) return;
-  // A round stem is held at its axis: held at its skin, a point that turns with it, it would be rolled over by its
-  // own weight.
+  // A round stem is held at its axis: held at its skin, a point that turns with it, it would be rolled over
+  // by its own weight.
   gaps_.push_back({i, (uint64_t(i) * 4 + probe) << 16 | number, solid, blade ? Vec3(on_axis + arm) : on_axis,
                    found.distance + (start - x).dot(found.normal), found.normal});
 }

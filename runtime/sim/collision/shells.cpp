@@ -56,9 +56,8 @@ void judge(Piece& piece) {
     piece.volume += a.dot(b.cross(c)) / 6;
     for (int k = 0; k < 3; ++k) balance[std::minmax(t[k], t[(k + 1) % 3])] += t[k] < t[(k + 1) % 3] ? 1 : -1;
   }
-  piece.solid = piece.volume > 0 && std::all_of(balance.begin(), balance.end(), [](const auto& edge) {
-                  return edge.second == 0;
-                });
+  piece.solid = piece.volume > 0 && std::all_of(balance.begin(), balance.end(),
+                                                [](const auto& edge) { return edge.second == 0; });
 }
 
 }  // namespace

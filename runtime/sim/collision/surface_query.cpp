@@ -17,7 +17,7 @@ struct SurfaceQuery::Embree {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
 
-  double half_sheet = 0;       // m
+  double half_sheet = 0;  // m
 
   Embree(const Mesh& mesh, double sheet) : surface(mesh, sheet > 0), half_sheet(sheet / 2) {
     const Mesh& m = surface.mesh();
@@ -113,7 +113,8 @@ SurfacePoint SurfaceQuery::closest(const Vec3& x, double within) const {
   const Vec3& normal = embree_->surface.pseudonormal(search.triangle, search.best.feature);
   if (embree_->half_sheet > 0) {
     const Vec3 away = distance > 1e-9 ? Vec3((x - search.best.point) / distance) : normal;
-    return {search.best.point + embree_->half_sheet * away, away, distance - embree_->half_sheet, search.triangle};
+    return {search.best.point + embree_->half_sheet * away, away, distance - embree_->half_sheet,
+            search.triangle};
   }
   const bool inside = (x - search.best.point).dot(normal) < 0;
   return {search.best.point, normal, inside ? -distance : distance, search.triangle};
