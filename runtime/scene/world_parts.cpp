@@ -25,7 +25,9 @@ double weight_of(const Plant& plant) {
 
 }  // namespace
 
-bool World::Inhabitant::asleep() const { return fallen && still_for >= kStillFor; }
+bool World::Inhabitant::asleep() const {
+  return fallen && still_for >= kStillFor;
+}
 
 void World::check_point(const ScenePoint& point, const char* table) const {
   if (point.domain.empty()) return;
@@ -33,8 +35,8 @@ void World::check_point(const ScenePoint& point, const char* table) const {
   for (size_t i = 0; i < names.size(); ++i)
     if (point.domain == names[i] || point.domain == "#" + std::to_string(i)) return;
   throw Error(Error::Kind::Input,
-              fmt::format("{}: {} names '{}', but '{}' has no such branch or leaf", scene_.file.string(), table,
-                          point.domain, inhabitants_[point.index]->plant.name),
+              fmt::format("{}: {} names '{}', but '{}' has no such branch or leaf", scene_.file.string(),
+                          table, point.domain, inhabitants_[point.index]->plant.name),
               fmt::format("did you mean '{}'?", nearest_word(point.domain, names)));
 }
 
@@ -45,12 +47,13 @@ std::optional<std::pair<size_t, ParticleId>> World::find(const ScenePoint& point
   double best_distance = std::numeric_limits<double>::infinity();
   for (const Branch& branch : self.plant.branches) {
     if (!point.domain.empty()) {
-      const bool named = branch.domain.valid() && (point.domain == self.domains[branch.domain.index()] ||
-                                                   point.domain == "#" + std::to_string(branch.domain.index()));
+      const bool named =
+          branch.domain.valid() && (point.domain == self.domains[branch.domain.index()] ||
+                                    point.domain == "#" + std::to_string(branch.domain.index()));
       if (!named) continue;
       const size_t count = branch.particles.size();
-      return std::pair{index, branch.particles[std::min(count - 1, static_cast<size_t>(
-                                                                       point.along * static_cast<double>(count)))]};
+      return std::pair{index, branch.particles[std::min(
+                                  count - 1, static_cast<size_t>(point.along * static_cast<double>(count)))]};
     }
     if (branch.kind == DomainKind::Leaf) continue;
     for (const ParticleId id : branch.particles) {
@@ -63,7 +66,9 @@ std::optional<std::pair<size_t, ParticleId>> World::find(const ScenePoint& point
 }
 
 void World::start_events() {
-  const auto now = [&](double when) { return static_cast<size_t>(std::lround(when / scene_.time_step)) == steps_; };
+  const auto now = [&](double when) {
+    return static_cast<size_t>(std::lround(when / scene_.time_step)) == steps_;
+  };
   const auto gone = [&](const char* what) {
     notes_.push_back(fmt::format("at {:.2f} s: nothing was left to {}", time(), what));
   };
@@ -124,10 +129,12 @@ void World::break_what_is_overloaded() {
     std::vector<Fracture> fractures;
     fractures.swap(inhabitants_[i]->fractures);
     // From the last id to the first: taking a particle off leaves those before it where they are.
-    std::sort(fractures.begin(), fractures.end(), [](const Fracture& a, const Fracture& b) { return b.at < a.at; });
+    std::sort(fractures.begin(), fractures.end(),
+              [](const Fracture& a, const Fracture& b) { return b.at < a.at; });
     for (const Fracture& fracture : fractures) {
       const Plant& plant = inhabitants_[i]->plant;
-      const bool leaf = plant.branches[plant.particles[fracture.at.index()].branch.index()].kind == DomainKind::Leaf;
+      const bool leaf =
+          plant.branches[plant.particles[fracture.at.index()].branch.index()].kind == DomainKind::Leaf;
       ++(leaf ? shed_ : broken_);
       take_off(i, fracture.at);
     }
@@ -196,7 +203,8 @@ void World::let_rest(Inhabitant& part) const {
     part.still_for = 0;
   }
   if (!part.asleep()) return;
-  for (Motion& motion : plant.motion) motion = {.position = motion.position, .orientation = motion.orientation};
+  for (Motion& motion : plant.motion)
+    motion = {.position = motion.position, .orientation = motion.orientation};
 }
 
 void World::remove_parts() {
