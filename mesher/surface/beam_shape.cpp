@@ -11,6 +11,8 @@ namespace liana {
 namespace {
 
 constexpr double kFlat = 0.05;  // thin over wide: flatter slices are sheets
+constexpr double kOneStrand =
+    2.6;  // outline over surface of the median slice: 1 a tube, 2.3 a strip's two sides
 
 double largest_finite(const std::vector<double>& values, uint32_t* at) {
   double largest = 0;
@@ -114,6 +116,21 @@ Section end_section(const Mesh& mesh, const Section& last, const Section& next, 
   return end;
 }
 
+/// The outlines of the sections account for the surface: a ring, or two branches side by side, have far less
+/// surface in a slice than the outline around both; a doubled or crumpled one has more.
+bool is_one_strand(const std::vector<Slice>& all, const std::vector<int>& used,
+                   const std::vector<Section>& sections, double height) {
+  std::vector<double> ratio;
+  for (size_t i = 0; i < used.size(); ++i) {
+    const double a = sections[i].half_width, b = sections[i].half_thickness;
+    const double outline = kPi * (3 * (a + b) - std::sqrt((3 * a + b) * (a + 3 * b)));  // Ramanujan 1914
+    ratio.push_back(outline * height / all[used[i]].area);
+  }
+  const auto middle = ratio.begin() + static_cast<ptrdiff_t>(ratio.size() / 2);
+  std::nth_element(ratio.begin(), middle, ratio.end());
+  return *middle < kOneStrand;
+}
+
 }  // namespace
 
 std::optional<SolidDomain> beam_shape(const Domain& domain, const Attachment& attachment) {
@@ -143,6 +160,7 @@ std::optional<SolidDomain> beam_shape(const Domain& domain, const Attachment& at
     solid.centreline.push_back(section);
   }
   if (domain.kind == DomainKind::Branch && 2 * flat > n) return {};
+  if (!is_one_strand(all, used, solid.centreline, length / count)) return {};
   // The slices at both ends hold lids: they end where the surface does, with the size of the others carried
   // on.
   const Section root = end_section(mesh, solid.centreline[0], solid.centreline[1], solid.centreline[2]);

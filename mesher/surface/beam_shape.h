@@ -13,7 +13,8 @@ namespace liana {
 /// a tube with these sections as its surface (for pictures; it may pass through itself). Exact for straight
 /// prismatic tubes: the mean square distance of a regular polygon's outline from its middle is four times its
 /// area's squared radius of gyration. A slice that is flat counts as a sheet of the domain's thickness.
-/// Nothing if the surface has no length or no width, or a branch no thickness.
+/// Nothing if the surface has no length or no width, a branch no thickness, or a
+/// slice several strands (a ring).
 std::optional<SolidDomain> beam_shape(const Domain& domain, const Attachment& attachment);
 
 /// The tube through elliptic sections, eight sides, closed, outward; the root lid's triangles come last.

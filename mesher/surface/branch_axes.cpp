@@ -171,13 +171,19 @@ class MergeTree {
   std::vector<int> joined_;
 };
 
+/// Of the area. A skin that would lose more is left whole: the repair ladder mends it and says so.
+constexpr double kMostLost = 0.02;
+
 bool closed_skin(const Mesh& shell, Mesh& skin, Adjacency& adjacency) {
   if (shell.triangles.size() < 8) return false;
   skin = compacted(shell);
   adjacency = find_adjacency(skin);
   if (!adjacency.manifold || !adjacency.oriented) {
     try {
-      skin = clean_shell(mend(skin).mesh, "skin").mesh;
+      const Mended mended = mend(skin);
+      CleanShell cleaned = clean_shell(mended.mesh, "skin");
+      if (mended.dropped > kMostLost || cleaned.kept < 1 - kMostLost) return false;
+      skin = std::move(cleaned.mesh);
     } catch (const Error&) {
       return false;
     }

@@ -167,7 +167,7 @@ size_t part_pinches(Mesh& mesh) {
 }  // namespace
 
 Mended mend(const Mesh& welded) {
-  Mended result{welded, {}};
+  Mended result{welded, 0, {}};
   Mesh& mesh = result.mesh;
   size_t slits = 0, patches = 0;
   for (int pass = 0; pass < 4; ++pass) {
@@ -176,12 +176,14 @@ Mended mend(const Mesh& welded) {
     slits += split;
     mesh = weld(mesh);
   }
+  const double area = surface_area(mesh);
   while (patches < 100 && drop_patch(mesh)) ++patches;
+  if (patches) result.dropped = 1 - surface_area(mesh) / area;
   const size_t pinches = part_pinches(mesh);
   if (slits) result.notes += fmt::format("+{}-slits-closed", slits);
   if (patches) result.notes += fmt::format("+{}-inner-or-loose-faces-dropped", patches);
   if (pinches) result.notes += fmt::format("+{}-pinches-parted", pinches);
-  if (result.notes.empty()) return {welded, {}};
+  if (result.notes.empty()) return {welded, 0, {}};
   mesh = compacted(mesh);
   return result;
 }

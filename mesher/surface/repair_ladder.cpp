@@ -26,13 +26,33 @@ constexpr double kWholeExtent = 0.85;  // of the box's diagonal: what a mended s
 constexpr double kAlpha = 0.4, kOffset = 1. / 200;  // of the diameter
 constexpr double kBothSides =
     1.6;  // wrapped area over area: a sheet, or a tube wrapped inside and out, has 2
-constexpr double kMostWrapTriangles = 60'000;  // expected; beyond that a wrap takes minutes
+constexpr double kMostWrapTriangles = 2500;  // expected; more take seconds, and alpha can be coarser
+constexpr double kWholeLength = 0.8;         // of the box's diagonal: the length of what is long and thin
+constexpr double kLongAndThin = 6;           // π extent² / area: length over diameter of a tube
+constexpr double kPlane = 1e-3;              // thinnest over longest extent (standard deviations)
 
 double extent(const Mesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const Triangle& t : mesh.triangles)
     for (const uint32_t v : t) box.extend(mesh.positions[v]);
   return box.isEmpty() ? 0 : box.diagonal().norm();
+}
+
+/// Everything in one plane: no wrap would give it a thickness of its own.
+bool is_plane(const Mesh& mesh) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& p : mesh.positions) mean += p / double(mesh.positions.size());
+  Mat3 spread = Mat3::Zero();
+  for (const Vec3& p : mesh.positions) spread += (p - mean) * (p - mean).transpose();
+  const Vec3 axes = Eigen::SelfAdjointEigenSolver<Mat3>(spread, Eigen::EigenvaluesOnly).eigenvalues();
+  return !(axes[0] > kPlane * kPlane * axes[2]);
+}
+
+bool has_border(const Mesh& mesh) {
+  for (const auto& across : find_adjacency(mesh).across)
+    for (const uint32_t other : across)
+      if (other == Adjacency::kNone) return true;
+  return false;
 }
 
 class Ladder {
@@ -48,14 +68,20 @@ class Ladder {
       if (auto solid = try_surface(mended.mesh, mended.notes)) return *solid;
     if (auto solid = untangle(mended.notes)) return *solid;
     if (auto solid = wrap(mended.mesh)) return *solid;
-    if (auto solid = beam_shape(domain_, attachment_)) {
-      solid->route = "beam";
-      return *solid;
-    }
-    throw reason;
+    auto beam = beam_shape(domain_, attachment_);
+    if (!beam || is_short(*beam)) throw reason;
+    beam->route = "beam";
+    return *beam;
   }
 
  private:
+  /// A branch whose root was found halfway up, or most of which is lost.
+  bool is_short(const SolidDomain& solid) const {
+    const double size = extent(domain_.surface);
+    return domain_.kind == DomainKind::Branch && solid.length < kWholeLength * size &&
+           kPi * size * size > kLongAndThin * surface_area(domain_.surface);
+  }
+
   std::optional<SolidDomain> try_surface(const Mesh& surface, const std::string& notes) {
     attempt_ = {};
     try {
@@ -66,10 +92,11 @@ class Ladder {
                          "make every piece a domain of its own");
         return {};
       }
-      if (!notes.empty() && extent(solid.surface) < kWholeExtent * extent(domain_.surface)) {
-        failure_ = Error(Error::Kind::Input,
-                         fmt::format("domain '{}': a part of it is lost when it is mended", domain_.name),
-                         "mend its surface by hand");
+      if (is_short(solid) ||
+          (!notes.empty() && extent(solid.surface) < kWholeExtent * extent(domain_.surface))) {
+        failure_ =
+            Error(Error::Kind::Input, fmt::format("domain '{}': a part of it would be lost", domain_.name),
+                  "mend its surface by hand");
         return {};
       }
       solid.route += notes;
@@ -89,22 +116,22 @@ class Ladder {
     return try_surface(*mesh, notes + "+untangled");
   }
 
-  /// Alpha grows if the wrap enters the surface by its openings. A sheet is none of its business: a wrap
-  /// would
-  /// give it the thickness of its offset.
+  /// Alpha grows if the wrap would be too large or enters the surface by its openings. A sheet is none of its
+  /// business: a wrap would give it the thickness of its offset.
   std::optional<SolidDomain> wrap(const Mesh& mended) {
     const Mesh mesh = weld(mended);
-    if (mesh.triangles.empty()) return {};
+    if (mesh.triangles.empty() || is_plane(mesh)) return {};
+    if (domain_.kind == DomainKind::Leaf && has_border(mesh)) return {};
     Eigen::AlignedBox3d box;
     for (const Vec3& p : mesh.positions) box.extend(p);
     const double area = surface_area(mesh), diagonal = box.diagonal().norm();
     const double diameter = std::min(area / (kPi * diagonal), diagonal);  // of a tube that long
     if (!(diameter > 1e-4 * diagonal)) return {};
     const double offset = kOffset * diameter;
-    for (const double alpha : {kAlpha * diameter, 3 * kAlpha * diameter}) {
+    for (const double alpha : {kAlpha * diameter, 2 * kAlpha * diameter, 4 * kAlpha * diameter}) {
       if (2.3 * area / (alpha * alpha) > kMostWrapTriangles) continue;
       std::optional<Mesh> wrapped = alpha_wrap(mesh, alpha, offset);
-      if (!wrapped) return {};
+      if (!wrapped) continue;
       const double wrapped_area = surface_area(*wrapped);
       if (2 * signed_volume(*wrapped) / wrapped_area < 8 * offset || wrapped_area > kBothSides * area)
         continue;

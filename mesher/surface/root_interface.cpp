@@ -68,6 +68,31 @@ std::vector<uint8_t> flood_to_crease(const Mesh& mesh, const Adjacency& adjacenc
   return marked;
 }
 
+/// A hole in the side of a branch looks across it, and the surface goes on past it, away from the tip.
+bool is_in_the_side(const Mesh& mesh, const std::vector<uint32_t>& loop) {
+  const Vec3 middle = loop_middle(mesh, loop);
+  Vec3 normal = Vec3::Zero(), centroid = Vec3::Zero();
+  for (size_t i = 0; i < loop.size(); ++i)
+    normal += (mesh.positions[loop[i]] - middle).cross(mesh.positions[loop[(i + 1) % loop.size()]] - middle);
+  double area = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const double a = area_vector(mesh, t).norm();
+    centroid += a / 3 * (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]);
+    area += a;
+  }
+  const Vec3 inward = (centroid / area - middle).normalized();
+  if (std::abs(inward.dot(normal.normalized())) > 0.35) return false;  // an end, cut at up to 70°
+  std::vector<uint8_t> source(mesh.positions.size(), 0);
+  for (const uint32_t v : loop) source[v] = 1;
+  const std::vector<double> from_loop = geodesic_distance(mesh, source);
+  uint32_t tip = loop[0];
+  for (uint32_t v = 0; v < from_loop.size(); ++v)
+    if (std::isfinite(from_loop[v]) && from_loop[v] > from_loop[tip]) tip = v;
+  std::vector<double> from_tip;
+  const uint32_t opposite = farthest(mesh, tip, from_tip);
+  return from_tip[opposite] > 1.2 * from_loop[tip];
+}
+
 }  // namespace
 
 size_t root_loop(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loops,
@@ -81,7 +106,9 @@ size_t root_loop(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loo
       best = i;
     }
   }
-  if (best == loops.size() || least < 0) return best;  // none, or inside the parent
+  if (best == loops.size()) return best;
+  if (is_in_the_side(mesh, loops[best])) return loops.size();
+  if (least < 0) return best;  // inside the parent
   // A closed root end lies nearer to the parent than the nearest hole, by more than the hole's width.
   const double width = 2 * std::sqrt(lid_area(mesh, loops[best]) / kPi);
   const uint32_t nearest = attachment.nearest(mesh, all_vertices(mesh));
@@ -181,7 +208,17 @@ std::vector<std::vector<uint8_t>> root_edges(const Mesh& mesh,
   if (!any) {
     const uint32_t point = *std::min_element(border.begin(), border.end(),
                                              [&](uint32_t a, uint32_t b) { return along(a) < along(b); });
-    mark([&](uint32_t a, uint32_t b) { return a == point || b == point; });
+    // A wide card's base edge leans against the diagonal: it rises less than its sides.
+    const auto rise = [&](uint32_t a, uint32_t b) { return std::abs(along(a) - along(b)) / length; };
+    double least = 1;
+    for (const std::vector<uint32_t>& loop : loops)
+      for (size_t i = 0; i < loop.size(); ++i) {
+        const uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
+        if (a == point || b == point) least = std::min(least, rise(a, b));
+      }
+    mark([&](uint32_t a, uint32_t b) {
+      return (a == point || b == point) && (least > 0.3 || rise(a, b) <= 1.2 * least);
+    });
   }
   return marked;
 }

@@ -47,9 +47,12 @@ class CutFinder {
       for (int step = 1; step <= 24; ++step) {
         const double place = crotch + 0.05 * step * d;
         if (place > (to - from).norm()) break;
-        const auto loop = loop_across(
-            field_, way, f, [&](uint32_t u) { return (field_.mesh.positions[u] - from).dot(along) - place; });
-        if (loop && accept(*loop, f, d)) return loop;
+        // Around a branch that stands off at right angles f begins below that of the crotch, by its diameter.
+        const double lowest = f - 1.2 * d;
+        const auto loop = loop_across(field_, way, lowest, [&](uint32_t u) {
+          return (field_.mesh.positions[u] - from).dot(along) - place;
+        });
+        if (loop && accept(*loop, lowest, d)) return loop;
       }
     }
     for (const double height : {0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0}) {

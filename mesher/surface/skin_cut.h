@@ -14,7 +14,7 @@ struct SkinPiece {
 
 /// True if a surface is a tube with side branches: cut_skin() would return more than one piece. Open ends
 /// count as closed by lids, small damage is mended (mend.h); false if no oriented manifold in one part
-/// remains.
+/// remains, or if more than 2 % of the surface would be lost by it.
 bool is_branching_skin(const Mesh& shell);
 
 /// Cuts a skin along the tree of its geodesic level sets (branch_axes.h) with one plane a branch, where the

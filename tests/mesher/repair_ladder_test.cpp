@@ -38,7 +38,7 @@ TEST(RepairLadder, WhateverIsDoneToATubeItIsASolidOrABeam) {
               : wrapped                                            ? "alpha-wrapped"
               : solid.route.find("untangled") != std::string::npos ? "untangled"
                                                                    : "exact"];
-      EXPECT_GT(solid.length, 0.15) << round << " " << solid.route;
+      EXPECT_GT(solid.length, 0.22) << round << " " << solid.route;
       EXPECT_GT(solid.volume, 0) << round << " " << solid.route;
       EXPECT_GE(solid.centreline.size(), 2u) << round;
       if (solid.is_beam) continue;
