@@ -67,6 +67,10 @@ std::string report_json(const World& world, double total_seconds, double render_
   json["particles"] = report.particles;
   json["state_hash"] = hash_text(world.state_hash());
   json["max_penetration_m"] = report.max_penetration;
+  json["contacts"] = report.contacts;
+  json["plant_contacts"] = report.plant_contacts;
+  json["grown_together"] = report.grown_together;
+  json["max_overlap_m"] = report.max_overlap;
   json["anchors"] = report.anchors;
   json["redone_steps"] = report.redone_steps;
   json["contact_passes"] = report.contact_passes;
@@ -78,6 +82,7 @@ std::string report_json(const World& world, double total_seconds, double render_
                      {"physics", report.seconds.physics},
                      {"growth", report.seconds.growth},
                      {"collision", report.seconds.collision},
+                     {"plant_contacts", report.seconds.touching},
                      {"wind", report.seconds.wind},
                      {"render", render_seconds}};
   if (report.air)
@@ -95,6 +100,9 @@ void print_summary(const World& world, double total_seconds, double render_secon
              report.particles, report.anchors, 1e3 * report.max_penetration, hash_text(world.state_hash()));
   fmt::print("seconds: growth {:.2f}, collision {:.2f}, physics {:.2f}, render {:.2f}, total {:.2f}\n", s.growth,
              s.collision, s.physics, render_seconds, total_seconds);
+  fmt::print("contacts in the last step: {} with obstacles, {} between plant parts ({} grown together, deepest overlap "
+             "{:.2f} mm, {:.2f} s)\n",
+             report.contacts, report.plant_contacts, report.grown_together, 1e3 * report.max_overlap, s.touching);
   if (report.air) {
     fmt::print("air: {} particles, {} substeps in {:.2f} s; {} emitted, {} left the domain\n", report.air->particles,
                report.air->substeps, s.wind, report.air->emitted, report.air->left);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "mesher/base/error.h"
+#include "runtime/sim/generalized_alpha.h"
 
 namespace liana {
 
@@ -24,6 +25,8 @@ bool Anchors::attach(Plant& plant, ParticleId particle, const Surroundings& arou
   record.along = 0;
   // Roots bridge the gap as it is: holding on does not pull.
   record.gap = support->distance - segment.half_width;
+  record.solid = support->solid;
+  record.on_solid = support->solid ? support->solid->to_mesh(support->point) : support->point;
   WorldSpring spring;
   spring.particle = particle;
   spring.target = support->point;
@@ -49,8 +52,15 @@ void Anchors::update(Plant& plant, double dt_growth) {
     spring.stiffness = stiffness * Mat3::Identity();
     spring.damping = parameters_.damping_time * spring.stiffness;
 
+    Vec3 held = record.on_solid;  // now; the spring acts at the moment of balance, between now and the step's end
+    if (record.solid) {
+      const Vec3 at_end = record.solid->to_world(record.on_solid);
+      spring.target_velocity = record.solid->velocity_at(at_end);
+      held = at_end - plant.scheme.dt * spring.target_velocity;
+      spring.target = at_end - GeneralizedAlpha(plant.scheme.rho_infinity).alpha_f * (at_end - held);
+    }
     const Vec3 point = motion.position + motion.orientation * spring.on_particle;
-    if ((point - spring.target).norm() > parameters_.release_distance) {
+    if ((point - held).norm() > parameters_.release_distance) {
       held_[spring.particle.index()] = 0;
       ++released_;
       continue;

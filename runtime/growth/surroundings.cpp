@@ -15,7 +15,7 @@ std::optional<Support> closest_support(std::span<const SdfObstacle* const> obsta
     if (found.distance > limit) continue;
     const Vec3 away = x - found.point;
     const bool touching = std::abs(found.distance) < 1e-9;
-    best = {found.point, touching ? found.normal : Vec3(away / found.distance), found.distance};
+    best = {found.point, touching ? found.normal : Vec3(away / found.distance), found.distance, obstacle};
   }
   return best;
 }

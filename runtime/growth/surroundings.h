@@ -13,6 +13,7 @@ struct Support {
   Vec3 point;       ///< m, on the surface
   Vec3 normal;      ///< unit, from the surface to the place asked for (outwards when it is inside)
   double distance;  ///< m, negative inside
+  const SdfObstacle* solid = nullptr;  ///< whose surface; null: the ground's
 };
 
 /// Exact. Nothing when no surface is within `radius` (m).

@@ -38,6 +38,20 @@ Mesh read_obstacle_mesh(const std::filesystem::path& path) {
   return all;
 }
 
+ContactFeel read_feel(const TomlTable& table) {
+  const ContactFeel usual;
+  return {table.number_or("friction", usual.friction, 0, 1), table.number_or("elasticity", usual.elasticity, 0, 1)};
+}
+
+/// Scales, rotates and moves a mesh about a point. Exact: its distance field is that of the moved mesh.
+void transform(const TomlTable& table, const Vec3& about, const Vec3& way, Mesh& mesh) {
+  const Vec3 scale = table.vector_or("scale", Vec3::Ones());
+  if (!(scale.minCoeff() >= 1e-4 && scale.maxCoeff() <= kFar))
+    table.fail("scale", fmt::format("must lie between 0.0001 and {} in every direction", kFar));
+  const Quat rotation = rotation_from_degrees(table.vector_or("rotate", Vec3::Zero()));
+  for (Vec3& p : mesh.positions) p = about + way + rotation * scale.cwiseProduct(p - about);
+}
+
 SceneObstacle read_obstacle(const TomlTable& table) {
   SceneObstacle obstacle;
   obstacle.name = table.text_or("name", "obstacle");
@@ -46,20 +60,27 @@ SceneObstacle read_obstacle(const TomlTable& table) {
   if (look != "plain" && look != "bricks") table.fail("look", "must be \"plain\" or \"bricks\"");
   obstacle.bricks = look == "bricks";
 
+  obstacle.feel = read_feel(table);
+  if (table.has("thickness")) obstacle.thickness = table.number("thickness", 5e-4, 1);
+  Vec3 pivot = Vec3::Zero();
+
   if (const auto box = table.table("box")) {
     const Vec3 centre = box->vector("center"), size = box->vector("size");
     if (!(size.minCoeff() >= 1e-3 && size.maxCoeff() <= kFar))
       box->fail("size", fmt::format("must lie between 0.001 and {} m in every direction", kFar));
     box->refuse_unknown_keys();
     obstacle.mesh = box_mesh(centre - size / 2, centre + size / 2);
+    pivot = centre;
+    transform(table, centre, Vec3::Zero(), obstacle.mesh);
   } else if (table.has("mesh")) {
     obstacle.mesh = read_obstacle_mesh(existing_file(table, "mesh"));
-    const Vec3 position = table.vector_or("position", Vec3::Zero());
-    for (Vec3& p : obstacle.mesh.positions) p += position;
+    pivot = table.vector_or("position", Vec3::Zero());
+    transform(table, Vec3::Zero(), pivot, obstacle.mesh);
   } else {
     table.fail("box", "or 'mesh' is needed to give the obstacle a shape",
                "box = { center = [0, 1.5, -0.1], size = [4, 3, 0.2] }");
   }
+  if (const auto motion = table.table("motion")) obstacle.motion = read_obstacle_motion(*motion, pivot);
   table.refuse_unknown_keys();
   return obstacle;
 }
@@ -129,6 +150,13 @@ Scene read_scene(const std::filesystem::path& path) {
     if ((scene.camera->eye - scene.camera->target).norm() < 1e-6)
       camera->fail("eye", "and 'target' must not coincide");
     camera->refuse_unknown_keys();
+  }
+  scene.plant_contacts = table.flag_or("plant_contacts", false);
+  if (const auto touch = table.table("plant_touch")) {
+    if (!scene.plant_contacts)
+      touch->fail("friction", "means nothing while plants do not touch each other", "set plant_contacts = true");
+    scene.plant_feel = read_feel(*touch);
+    touch->refuse_unknown_keys();
   }
   for (const TomlTable& entry : table.tables("obstacle")) scene.obstacles.push_back(read_obstacle(entry));
   for (const TomlTable& entry : table.tables("plant")) scene.plants.push_back(read_plant_entry(entry));

@@ -8,6 +8,7 @@
 
 #include "mesher/base/mesh.h"
 #include "runtime/growth/climber_parameters.h"
+#include "runtime/scene/obstacle_motion.h"
 #include "runtime/sim/plant.h"
 #include "runtime/wind/sph_wind.h"
 
@@ -15,9 +16,12 @@ namespace liana {
 
 struct SceneObstacle {
   std::string name;
-  Mesh mesh;  ///< world frame, m
+  Mesh mesh;  ///< world frame, m: scaled, rotated and placed, before it moves
   Vec3 color;
   bool bricks;
+  ContactFeel feel;
+  std::optional<double> thickness;  ///< m, of the parts that have no inside
+  std::optional<ObstacleMotion> motion;
 };
 
 /// A plant from a bake, standing at a place.
@@ -108,6 +112,8 @@ struct Scene {
   Vec3 to_sun = {0.4, 0.8, 0.45};
   SceneWind wind;
   std::vector<SceneObstacle> obstacles;
+  bool plant_contacts = false;  ///< plants touch each other and themselves
+  ContactFeel plant_feel;
   std::vector<ScenePlant> plants;
   std::vector<SceneClimber> climbers;
   std::vector<ScenePluck> plucks;

@@ -12,6 +12,7 @@
 #include "mesher/base/nearest_word.h"
 #include "mesher/base/parallel.h"
 #include "mesher/base/stopwatch.h"
+#include "runtime/sim/collision/shells.h"
 #include "runtime/sim/plant_from_bake.h"
 #include "runtime/sim/state_hash.h"
 #include "runtime/view/air_drawing.h"
@@ -20,13 +21,26 @@ namespace liana {
 namespace {
 
 constexpr size_t kMostBreaksAStep = 8;  // of one plant; what remains overloaded breaks in the next
-constexpr double kGroundHeight = 0;  // m: the ground is level, as the renderer draws it
+constexpr double kGroundHeight = 0;     // m: the ground is level, as the renderer draws it
 
-std::vector<std::unique_ptr<SdfObstacle>> obstacles_of(const Scene& scene) {
+/// owner: for each of them, which obstacle of the scene it belongs to.
+std::vector<std::unique_ptr<SdfObstacle>> obstacles_of(const Scene& scene, std::vector<size_t>& owner,
+                                                       std::vector<std::string>& notes) {
   std::vector<std::unique_ptr<SdfObstacle>> obstacles;
   for (const SceneObstacle& obstacle : scene.obstacles) {
     try {
-      obstacles.push_back(std::make_unique<SdfObstacle>(obstacle.mesh));
+      ShellOptions options{.feel = obstacle.feel};
+      options.thickness = obstacle.thickness.value_or(options.thickness);
+      Shells shells = obstacles_from(obstacle.mesh, options);
+      if (shells.sheets > 0 && !obstacle.thickness)
+        notes.push_back(fmt::format(
+            "obstacle '{}': {} of its {} pieces have no inside and count as sheets {} mm thick "
+            "('thickness' sets it)",
+            obstacle.name, shells.sheets, shells.solids + shells.sheets, 1e3 * options.thickness));
+      for (auto& shell : shells.obstacles) {
+        owner.push_back(&obstacle - scene.obstacles.data());
+        obstacles.push_back(std::move(shell));
+      }
     } catch (const Error& error) {
       throw Error(error.kind,
                   fmt::format("{}: obstacle '{}': {}", scene.file.string(), obstacle.name, error.what()),
@@ -58,8 +72,9 @@ void World::add(const WorldReport& own, WorldReport& total) {
 World::World(const Scene& scene, unsigned threads)
     : scene_(scene),
       threads_(threads),
-      obstacles_(obstacles_of(scene)),
+      obstacles_(obstacles_of(scene, obstacle_of_, notes_)),
       solids_(pointers_to(obstacles_)),
+      touching_({.feel = scene.plant_feel}),
       wind_(scene, solids_, kGroundHeight, threads) {
   for (const ScenePlant& entry : scene.plants) add_baked(entry);
   for (size_t i = 0; i < scene.climbers.size(); ++i) add_climber(scene.climbers[i], scene.seed + i);
@@ -81,14 +96,16 @@ void World::add_baked(const ScenePlant& entry) {
   const std::string& name = inhabitant->plant.name;
   if (!calibration.note.empty()) notes_.push_back(name + ": " + calibration.note);
   if (!calibration.out_of_range.empty())
-    notes_.push_back(fmt::format("{}: {} of {} domains are too fast for a step of {} s and move as near as it can",
-                                 name, calibration.out_of_range.size(), calibration.branches, scene_.time_step));
+    notes_.push_back(
+        fmt::format("{}: {} of {} domains are too fast for a step of {} s and move as near as it can", name,
+                    calibration.out_of_range.size(), calibration.branches, scene_.time_step));
   inhabitant->look = plant_look(bake.law.species);
   for (const BakedDomain& domain : bake.domains) inhabitant->domains.push_back(domain.name);
   const size_t unknown = set_strengths(inhabitant->plant, bake.law, entry.breaking);
   if (entry.breaking > 0 && unknown > 0)
-    notes_.push_back(fmt::format("{}: {} branches and leaves have no modulus of rupture in their law: they do not break",
-                                 name, unknown));
+    notes_.push_back(
+        fmt::format("{}: {} branches and leaves have no modulus of rupture in their law: they do not break",
+                    name, unknown));
   inhabitants_.push_back(std::move(inhabitant));
   for (const ScenePluck& pluck : scene_.plucks)
     if (pluck.plant + 1 == inhabitants_.size()) add_pluck(pluck, bake);
@@ -107,10 +124,11 @@ void World::add_pluck(const ScenePluck& entry, const Bake& bake) {
   }
   if (!found)
     throw Error(Error::Kind::Input,
-                fmt::format("{}: [[pluck]] names '{}', but '{}' has no such branch or leaf", scene_.file.string(),
-                            entry.domain, plant.name),
+                fmt::format("{}: [[pluck]] names '{}', but '{}' has no such branch or leaf",
+                            scene_.file.string(), entry.domain, plant.name),
                 fmt::format("did you mean '{}'?", nearest_word(entry.domain, names)));
-  plucks_.push_back({entry.plant, *found, static_cast<size_t>(std::lround(entry.time / scene_.time_step)), entry.velocity});
+  plucks_.push_back(
+      {entry.plant, *found, static_cast<size_t>(std::lround(entry.time / scene_.time_step)), entry.velocity});
 }
 
 void World::pluck(size_t index) {
@@ -158,13 +176,34 @@ void World::add_climber(const SceneClimber& entry, uint64_t seed) {
   inhabitants_.push_back(std::move(inhabitant));
 }
 
+void World::move_obstacles() {
+  for (size_t i = 0; i < obstacles_.size(); ++i)
+    if (const auto& motion = scene_.obstacles[obstacle_of_[i]].motion)
+      obstacles_[i]->place(motion->between(time(), time() + scene_.time_step));
+}
+
 void World::step() {
   const PhaseSeconds before = report().seconds;
   start_events();
   lead_grabs();
+  move_obstacles();
+  // The air and other plants meet all plants at once, between their growth and their steps.
+  parallel_for(inhabitants_.size(), threads_, [&](size_t i, unsigned) {
+    inhabitants_[i]->springs.clear();
+    pluck(i);
+    grow(*inhabitants_[i]);
+  });
+  if (scene_.plant_contacts) {
+    all_plants_.clear();
+    all_springs_.clear();
+    for (const auto& inhabitant : inhabitants_) {
+      all_plants_.push_back(&inhabitant->plant);
+      all_springs_.push_back(&inhabitant->springs);
+    }
+    touching_seconds_ += timed([&] { touched_ = touching_.gather(all_plants_, all_springs_); });
+    max_overlap_ = std::max(max_overlap_, touched_.max_overlap);
+  }
   if (wind_.has_air()) {
-    // The air meets all plants at once, between their growth and their steps.
-    parallel_for(inhabitants_.size(), threads_, [&](size_t i, unsigned) { grow(*inhabitants_[i]); });
     in_wind_.clear();
     for (const auto& inhabitant : inhabitants_) in_wind_.push_back({&inhabitant->plant, inhabitant->growing});
     wind_.advance(in_wind_, time(), scene_.time_step);
@@ -175,8 +214,8 @@ void World::step() {
   remove_parts();
   ++steps_;
   const PhaseSeconds after = report().seconds;
-  last_step_ = {after.growth - before.growth, after.collision - before.collision, after.physics - before.physics,
-                after.wind - before.wind};
+  last_step_ = {after.growth - before.growth, after.collision - before.collision,
+                after.physics - before.physics, after.touching - before.touching, after.wind - before.wind};
 }
 
 void World::grow(Inhabitant& self) {
@@ -190,17 +229,16 @@ void World::grow(Inhabitant& self) {
 void World::step_inhabitant(size_t index) {
   Inhabitant& self = *inhabitants_[index];
   WorldReport& report = self.report;
-  self.springs.clear();
-  pluck(index);
-  if (!wind_.has_air()) grow(self);
   if (self.plant.particles.empty() || self.asleep()) return;
   const Stopwatch watch;
   wind_.add_to(index, self.plant, time(), self.springs, self.wrenches);
   if (grabbed_ && grabbed_->plant == index) self.springs.push_back(grabbed_->spring);
   for (const ScriptedGrab& grab : scripted_)
     if (grab.plant == index) self.springs.push_back(grab.spring);
-  const ContactStepReport done = self.stepper.step(self.plant, {solids_, kGroundHeight}, self.wrenches, self.springs,
-                                                   {.dt = scene_.time_step, .gravity = scene_.gravity});
+  const ContactStepReport done =
+      self.stepper.step(self.plant, {solids_, kGroundHeight}, self.wrenches, self.springs,
+                        {.dt = scene_.time_step, .gravity = scene_.gravity});
+  report.contacts = done.contacts.contacts;
   report.max_penetration = std::max(report.max_penetration, done.contacts.max_penetration);
   report.contact_passes += static_cast<size_t>(done.passes - 1);
   report.redone_steps += done.step.redone > 0;
@@ -212,7 +250,9 @@ void World::step_inhabitant(size_t index) {
   report.seconds.physics += watch.seconds() - done.collision_seconds;
 }
 
-void World::draw(DrawScene& scene) const { add_to(scene, false); }
+void World::draw(DrawScene& scene) const {
+  add_to(scene, false);
+}
 
 DrawScene World::drawing(bool names) const {
   DrawScene scene;
@@ -223,8 +263,12 @@ DrawScene World::drawing(bool names) const {
 void World::add_to(DrawScene& scene, bool names) const {
   for (const auto& inhabitant : inhabitants_)
     add_plant(inhabitant->plant, inhabitant->look, {.names = names}, scene);
-  for (const SceneObstacle& obstacle : scene_.obstacles)
+  for (const SceneObstacle& obstacle : scene_.obstacles) {
     scene.meshes.push_back({obstacle.mesh, obstacle.color, obstacle.bricks, obstacle.name});
+    if (!obstacle.motion) continue;
+    const ObstaclePose pose = obstacle.motion->between(time(), time());
+    for (Vec3& p : scene.meshes.back().mesh.positions) p = pose.rotation * p + pose.position;
+  }
   scene.to_sun = scene_.to_sun.normalized();
   if (wind_.has_air() && scene_.wind.show_air) add_air(wind_.air()->air(), scene);
 }
@@ -259,10 +303,15 @@ WorldReport World::report() const {
   for (const auto& inhabitant : inhabitants_) {
     total.particles += inhabitant->plant.particles.size();
     total.anchors += inhabitant->plant.anchors.size();
+    total.contacts += inhabitant->report.contacts;
     total.fallen += inhabitant->fallen;
     total.asleep += inhabitant->asleep();
     add(inhabitant->report, total);
   }
+  total.plant_contacts = touched_.contacts;
+  total.grown_together = touched_.exempt;
+  total.max_overlap = max_overlap_;
+  total.seconds.touching = touching_seconds_;
   total.broken = broken_, total.shed = shed_, total.cut = cut_, total.removed = removed_;
   total.seconds.wind = wind_.seconds();
   if (wind_.has_air()) total.air = wind_.air()->report();
@@ -276,7 +325,7 @@ SimulationStats World::stats() const {
           .particles = now.particles,
           .anchors = now.anchors,
           .growth_ms = 1e3 * last_step_.growth,
-          .collision_ms = 1e3 * last_step_.collision,
+          .collision_ms = 1e3 * (last_step_.collision + last_step_.touching),
           .physics_ms = 1e3 * last_step_.physics,
           .wind_ms = 1e3 * last_step_.wind,
           .redone_steps = now.redone_steps};

@@ -10,6 +10,7 @@
 #include "runtime/scene/world_wind.h"
 #include "runtime/sim/breaking.h"
 #include "runtime/sim/collision/contact_step.h"
+#include "runtime/sim/collision/plant_contacts.h"
 #include "runtime/sim/topology.h"
 #include "runtime/view/camera.h"
 #include "runtime/view/plant_drawing.h"
@@ -20,12 +21,17 @@ namespace liana {
 /// Seconds of work since the start, summed over threads.
 struct PhaseSeconds {
   double growth = 0, collision = 0, physics = 0;
-  double wind = 0;  ///< air particles; wall clock
+  double touching = 0;  ///< plants with plants; wall clock
+  double wind = 0;      ///< air particles; wall clock
 };
 
 /// What happened since the start.
 struct WorldReport {
   size_t steps = 0, particles = 0, anchors = 0;
+  size_t contacts = 0;               ///< with obstacles and the ground, in the last step
+  size_t plant_contacts = 0;         ///< pairs of particles that touched in the last step
+  size_t grown_together = 0;         ///< pairs that overlap since they were made, and do not push each other
+  double max_overlap = 0;            ///< m, of two plant parts that touch
   double max_penetration = 0;        ///< m, deepest that any particle ever was in an obstacle or the ground
   size_t redone_steps = 0;           ///< steps that the solver took again with finer substeps
   size_t contact_passes = 0;         ///< taken again because a contact showed only at the step's end
@@ -70,12 +76,12 @@ class World final : public Simulation {
     std::optional<Climber> climber;
     double growth_speed = 1;
     PlantLook look;
-    std::vector<WorldSpring> springs;  // wind, grab and contacts of the step
-    std::vector<Wrench> wrenches;      // the air's pressure
-    std::vector<uint8_t> growing;      // per particle, of a climber
-    std::vector<std::string> domains;  // of its bake: names by DomainId
-    std::vector<Fracture> fractures;   // of the last step
-    bool fallen = false;               // broken or cut off
+    std::vector<WorldSpring> springs;      // wind, grab and contacts of the step
+    std::vector<Wrench> wrenches;          // the air's pressure
+    std::vector<uint8_t> growing;          // per particle, of a climber
+    std::vector<std::string> domains;      // of its bake: names by DomainId
+    std::vector<Fracture> fractures;       // of the last step
+    bool fallen = false;                   // broken or cut off
     double fallen_for = 0, still_for = 0;  // s
     std::vector<Vec3> lay;                 // m, where a part's particles were when it last moved
     WorldReport report;
@@ -91,7 +97,7 @@ class World final : public Simulation {
   struct Grab {
     size_t plant;
     WorldSpring spring;
-    size_t asked_plant;          // as the caller knows it: the particle may have moved to a fallen part since
+    size_t asked_plant;  // as the caller knows it: the particle may have moved to a fallen part since
     ParticleId asked_particle;
   };
   struct ScriptedGrab {
@@ -102,6 +108,7 @@ class World final : public Simulation {
   };
 
   double time() const { return static_cast<double>(steps_) * scene_.time_step; }
+  void move_obstacles();
   void add_baked(const ScenePlant& entry);
   void add_climber(const SceneClimber& entry, uint64_t seed);
   void grow(Inhabitant& self);
@@ -121,9 +128,16 @@ class World final : public Simulation {
   void remove_parts();
 
   Scene scene_;
+  std::vector<std::string> notes_;
   unsigned threads_;
+  std::vector<size_t> obstacle_of_;  // of each solid, in the scene
   std::vector<std::unique_ptr<SdfObstacle>> obstacles_;
   std::vector<const SdfObstacle*> solids_;
+  PlantContacts touching_;
+  PlantContactReport touched_;
+  double max_overlap_ = 0, touching_seconds_ = 0;  // m, s
+  std::vector<const Plant*> all_plants_;
+  std::vector<std::vector<WorldSpring>*> all_springs_;
   WorldWind wind_;
   std::vector<std::unique_ptr<Inhabitant>> inhabitants_;
   std::vector<PlantInWind> in_wind_;
@@ -134,7 +148,6 @@ class World final : public Simulation {
   std::vector<Pluck> plucks_;
   size_t steps_ = 0;
   PhaseSeconds last_step_;
-  std::vector<std::string> notes_;
 };
 
 }  // namespace liana

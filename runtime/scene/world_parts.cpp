@@ -152,6 +152,7 @@ void World::take_off(size_t index, ParticleId particle) {
   part->fallen = true;
   part->plant.name = fmt::format("{} part {}", from.plant.name, broken_ + shed_ + cut_);
   from.stepper.follow(change);
+  touching_.follow(static_cast<uint32_t>(index), change);
   if (from.climber) from.climber->follow(change);
   from.growing.clear();
   from.lay.clear();
@@ -218,6 +219,7 @@ void World::remove_parts() {
     if (std::any_of(scripted_.begin(), scripted_.end(), [&](const ScriptedGrab& g) { return g.plant == i; }))
       continue;
     add(part.report, departed_);
+    touching_.forget(static_cast<uint32_t>(i));
     inhabitants_.erase(inhabitants_.begin() + static_cast<std::ptrdiff_t>(i));
     if (grabbed_ && grabbed_->plant > i) --grabbed_->plant;
     for (ScriptedGrab& grab : scripted_)

@@ -238,6 +238,18 @@ TEST_F(BadInput, PluckIsRefusedWithItsLineOrTheNameItMeans) {
   expect_refused({"simulate", "none.toml"}, "did you mean 'trunk'");
 }
 
+TEST_F(BadInput, ObstaclesThatCannotMoveLikeThatAreRefusedWithTheirLine) {
+  const std::string scene = "[[climber]]\nspecies = \"ivy\"\nposition = [0, 0, 0]\n[[obstacle]]\n"
+                            "box = { center = [0, 1, 0], size = [1, 1, 1] }\n";
+  write("friction.toml", scene + "friction = 1.5\n");
+  expect_refused({"simulate", "friction.toml"}, "friction.toml:6");
+  write("keys.toml", scene + "[obstacle.motion]\n[[obstacle.motion.keyframe]]\ntime = 2\n"
+                             "[[obstacle.motion.keyframe]]\ntime = 1\n");
+  expect_refused({"simulate", "keys.toml"}, "keys.toml:10");
+  write("fast.toml", scene + "motion = { velocity = [0, 900, 0] }\n");
+  expect_refused({"simulate", "fast.toml"}, "velocity");
+}
+
 TEST_F(BadInput, AbsurdNumbersAreRefused) {
   const std::string apple = read_file(kData / "species/apple.toml");
   expect_refused({"bake", kSmallTree, "--species", "apple", "--set", "default_material.density=-3", "-o", "x.bake"},

@@ -143,5 +143,112 @@ TEST(Contacts, RootsAndWhatIsBuriedWithThemAreLeftAlone) {
   EXPECT_EQ(report.max_penetration, 0);
 }
 
+TEST(Contacts, WhatRestsOnABoxForAMinuteNeitherCreepsNorTrembles) {
+  SdfObstacle box(box_mesh({-0.5, -0.5, -0.5}, {0.5, 0, 0.5}));
+  const SdfObstacle* solids[] = {&box};
+  Plant plant = loose_stick({0, 2e-3, 0}, kLying);
+  // 15° of slope, by gravity: the pull along it is 0.45 of what friction holds.
+  const Vec3 gravity = 9.81 * Vec3(0, -std::cos(0.26), std::sin(0.26));
+  run(plant, {solids, {}}, 80, gravity);
+  const Vec3 start = plant.motion[1].position;
+  double fastest = 0;
+  ContactStepper stepper;
+  for (int i = 0; i < 2400; ++i) {
+    std::vector<WorldSpring> springs;
+    stepper.step(plant, {solids, {}}, {}, springs, {.gravity = gravity});
+    if (i > 40) fastest = std::max(fastest, plant.motion[1].velocity.norm());
+  }
+  EXPECT_LT((plant.motion[1].position - start).norm(), 1e-4) << "m in a minute";
+  EXPECT_LT(fastest, 1e-6) << "m/s";
+}
+
+TEST(Contacts, TheFrictionConeIsCoulombs) {
+  // tan 30.96° = 0.6. One degree to either side: a = g (sin - 0.6 cos) = 0.20 m/s² above.
+  for (const double degrees : {30.0, 32.0, 40.0}) {
+    Plant plant = loose_stick({0, 2e-3, 0}, kLying);
+    run(plant, {{}, 0.0}, 40);
+    const Vec3 start = plant.motion[1].position;
+    const double slope = degrees * kPi / 180;
+    run(plant, {{}, 0.0}, 40, 9.81 * Vec3(0, -std::cos(slope), std::sin(slope)));  // 1 s
+    const double slid = (plant.motion[1].position - start).norm();
+    const double free = 0.5 * 9.81 * (std::sin(slope) - 0.6 * std::cos(slope));
+    if (degrees < 31) {
+      EXPECT_LT(slid, 1e-3);
+    } else {
+      EXPECT_NEAR(slid, free, 0.25 * free + 0.02) << degrees;
+    }
+  }
+}
+
+TEST(Contacts, AStickReboundsWithItsElasticity) {
+  for (const double elasticity : {0.0, 0.5, 1.0}) {
+    SdfObstacle box(box_mesh({-0.5, -0.5, -0.5}, {0.5, 0, 0.5}));
+    box.feel.elasticity = elasticity;
+    const SdfObstacle* solids[] = {&box};
+    Plant plant = loose_stick({0, 0.2, 0}, kLying);
+    plant.motion[1].velocity = {0, -2, 0};
+    run(plant, {solids, {}}, 12, Vec3::Zero());
+    EXPECT_NEAR(plant.motion[1].velocity.y(), 2 * elasticity, 0.05) << elasticity;
+  }
+}
+
+TEST(Contacts, AMovingBoxPushesAndCarriesWhatLiesOnIt) {
+  SdfObstacle box(box_mesh({-0.2, -0.1, -0.2}, {0.2, 0, 0.2}));
+  const SdfObstacle* solids[] = {&box};
+  Plant plant = loose_stick({0, 2e-3, 0}, kLying);
+  run(plant, {solids, {}}, 40);
+  ContactStepper stepper;
+  // Sideways and up, gaining speed at 1 m/s² sideways: less than friction's 5.9.
+  const double dt = plant.scheme.dt;
+  Vec3 velocity(0, 0, 0);
+  ObstaclePose pose;
+  double deepest = 0;
+  for (int i = 0; i < 40; ++i) {
+    velocity += dt * Vec3(1, 0.5, 0);
+    pose.position = pose.centre = Vec3(pose.position + dt * velocity);
+    pose.velocity = velocity;
+    box.place(pose);
+    std::vector<WorldSpring> springs;
+    const auto report = stepper.step(plant, {solids, {}}, {}, springs, {});
+    deepest = std::max(deepest, report.contacts.max_penetration);
+  }
+  EXPECT_LT((plant.motion[1].position - pose.position - Vec3(0, 2e-3, 0)).norm(), 5e-3)
+      << "a fifth of its way in the last step";
+  EXPECT_NEAR((plant.motion[1].velocity - velocity).norm(), 0, 0.03);
+  EXPECT_LT(deepest, 1e-3);
+}
+
+TEST(Contacts, AThinBarIsNotPassedWhereverItMeetsTheStick) {
+  // 1 cm, square; up to 5 m/s: 12 bars in a step. The stick hardly turns: struck beside its middle, it would
+  // else swing round the bar.
+  const SdfObstacle bar(box_mesh({-1, -0.005, -0.005}, {1, 0.005, 0.005}));
+  const SdfObstacle* solids[] = {&bar};
+  for (const double speed : {0.5, 2.0, 5.0})
+    for (const double along : {-0.026, -0.015, 0.0, 0.012, 0.028}) {
+      Plant plant = loose_stick({0, along, 0.2}, Quat::Identity());  // upright, moving level
+      plant.motion[1].velocity = {0, 0, -speed};
+      plant.particles[1].inertia *= 1e4;
+      ContactStepper stepper;
+      bool behind = false;
+      for (int i = 0; i < 80; ++i) {
+        std::vector<WorldSpring> springs;
+        stepper.step(plant, {solids, {}}, {}, springs, {.gravity = Vec3::Zero()});
+        const Vec3 axis = plant.motion[1].orientation * Vec3::UnitY();
+        const double s = std::abs(axis.y()) > 1e-3 ? -plant.motion[1].position.y() / axis.y() : 1;
+        if (std::abs(s) < 0.029) behind |= (plant.motion[1].position + s * axis).z() < 0;
+      }
+      EXPECT_FALSE(behind) << speed << " m/s, " << along << " m from its middle";
+    }
+}
+
+TEST(Contacts, WhatPassesByABarIsNotTouched) {
+  const SdfObstacle bar(box_mesh({-1, -0.005, -0.005}, {1, 0.005, 0.005}));
+  const SdfObstacle* solids[] = {&bar};
+  Plant plant = loose_stick({0, 0.025, 0.2}, kLying);
+  plant.motion[1].velocity = {0, 0, -5};
+  run(plant, {solids, {}}, 4, Vec3::Zero());
+  EXPECT_NEAR(plant.motion[1].position.z(), -0.3, 1e-9);
+}
+
 }  // namespace
 }  // namespace liana

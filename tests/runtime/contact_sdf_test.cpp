@@ -7,6 +7,7 @@
 #include "mesher/base/random.h"
 #include "runtime/sim/collision/box_mesh.h"
 #include "runtime/sim/collision/sdf_obstacle.h"
+#include "runtime/sim/collision/shells.h"
 
 namespace liana {
 namespace {
@@ -145,6 +146,84 @@ TEST(SdfObstacle, LeavesTheFloatingPointModeAlone) {
 #else
   GTEST_SKIP() << "no SSE control register here";
 #endif
+}
+
+TEST(SdfObstacle, OfAScaledAndTurnedBoxIsItsAnalyticDistance) {
+  // 1 m cubes scaled to (0.3, 1, 0.05), turned, moved; then moved again as an obstacle that moves.
+  const Vec3 size(0.3, 1, 0.05);
+  const Affine3 affine = Eigen::Translation3d(0.2, -0.1, 0.4) *
+                         Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()) * Eigen::Scaling(size);
+  Mesh mesh = box_mesh(Vec3::Constant(-0.5), Vec3::Constant(0.5));
+  for (Vec3& p : mesh.positions) p = affine * p;
+  SdfObstacle box(mesh, {.voxel = 0.01, .band = 0.05});
+  ObstaclePose pose;
+  pose.rotation = Quat(Eigen::AngleAxisd(-1.1, Vec3(0.3, 1, 0).normalized()));
+  pose.position = {1, 2, 3};
+  box.place(pose);
+  Random random(9, "affine");
+  for (int i = 0; i < 5000; ++i) {
+    const Vec3 local = 0.5 * size + Vec3::Constant(0.1);
+    const Vec3 in_box(random.uniform(-local.x(), local.x()), random.uniform(-local.y(), local.y()),
+                      random.uniform(-local.z(), local.z()));
+    const Vec3 q = in_box.cwiseAbs() - size / 2;
+    const double exact = q.cwiseMax(0).norm() + std::min(0.0, q.maxCoeff());
+    const Vec3 x = pose.rotation * (affine * in_box.cwiseQuotient(size)) + pose.position;
+    const SdfSample found = box.sample(x);
+    EXPECT_NEAR(box.closest_point(x).distance, exact, 1e-9);
+    if (std::abs(exact) < box.band()) {
+      EXPECT_NEAR(found.distance, exact, 0.1 * box.voxel());
+      EXPECT_NEAR(found.gradient.norm(), 1, 1e-9);
+    } else {
+      EXPECT_LE(std::abs(found.distance), std::abs(exact) + 0.1 * box.voxel());
+    }
+    EXPECT_TRUE((x.array() >= box.low().array() - 0.3).all());
+    if (exact < 0) {
+      EXPECT_TRUE((x.array() >= box.low().array() - 1e-9).all() &&
+                  (x.array() <= box.high().array() + 1e-9).all());
+    }
+  }
+}
+
+TEST(SdfObstacle, AnOpenSheetHasTheThicknessItIsGiven) {
+  Mesh sheet;  // 1 m square in the plane z = 0
+  sheet.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const SdfObstacle obstacle(sheet, {.sheet = 0.006});
+  for (const double z : {-0.02, -0.004, 0.001, 0.0035, 0.03}) {
+    const SdfSample found = obstacle.sample({0.4, 0.3, z});
+    EXPECT_NEAR(found.distance, std::abs(z) - 0.003, 2e-4) << z;
+    EXPECT_NEAR(found.gradient.z(), z > 0 ? 1 : -1, 1e-3) << z;
+  }
+  EXPECT_NEAR(obstacle.distance({1.01, 0.5, 0}), 0.007, 2e-4) << "rounded at its rim";
+}
+
+TEST(Shells, ClosedPiecesAreSolidAndOpenOnesSheets) {
+  Mesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
+  const auto add = [&](const Mesh& more) {
+    const auto first = static_cast<uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), more.positions.begin(), more.positions.end());
+    for (const Triangle& t : more.triangles)
+      mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  };
+  add(box_mesh({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}));  // overlaps the first
+  Mesh open = box_mesh({3, 0, 0}, {4, 1, 1});
+  open.triangles.pop_back();
+  add(open);
+  const Shells shells = obstacles_from(mesh, {.thickness = 0.01});
+  EXPECT_EQ(shells.solids, 2u);
+  EXPECT_EQ(shells.sheets, 1u);
+  ASSERT_EQ(shells.obstacles.size(), 3u);
+  double nearest = 1;
+  for (const auto& o : shells.obstacles)
+    nearest = std::min(nearest, o->closest_point({0.75, 0.75, 0.75}).distance);
+  EXPECT_NEAR(nearest, -0.25, 1e-9);
+  EXPECT_GT(shells.obstacles[2]->distance({3.5, 0.5, 0.5}), 0) << "an open box is hollow";
+}
+
+TEST(SdfObstacle, FindsItsResolutionFromItsThinnestParts) {
+  // A 1 cm bar of 2 m; a 2 m block.
+  EXPECT_LT(geometric_voxel(box_mesh({0, 0, 0}, {2, 0.01, 0.01}), 0), 0.005);
+  EXPECT_GT(geometric_voxel(box_mesh({0, 0, 0}, {2, 2, 2}), 0), 0.01);
 }
 
 std::string refusal(const Mesh& mesh) {

@@ -100,9 +100,9 @@ TrianglePoint closest_on_triangle(const Vec3& x, const Vec3& a, const Vec3& b, c
   return best;
 }
 
-ClosedMesh::ClosedMesh(const Mesh& source) : mesh_(welded(source)) {
-  require_closed(mesh_);
-  if (!(six_volumes(mesh_) > 0))
+ClosedMesh::ClosedMesh(const Mesh& source, bool may_be_open) : mesh_(welded(source)) {
+  if (!may_be_open) require_closed(mesh_);
+  if (!may_be_open && !(six_volumes(mesh_) > 0))
     throw Error(Error::Kind::Input, "an obstacle surface is inside out or encloses no volume",
                 "let its triangles wind counter-clockwise seen from outside");
 

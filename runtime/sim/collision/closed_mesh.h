@@ -1,4 +1,4 @@
-// A closed triangle surface with the normals that tell inside from outside at every closest point.
+// A triangle surface with normals at every closest point: of a closed one, they tell inside from outside.
 #pragma once
 
 #include <array>
@@ -22,11 +22,12 @@ struct TrianglePoint {
 TrianglePoint closest_on_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Vertices welded by exact position. The angle-weighted pseudonormals of [Baerentzen & Aanaes 2005]: with x
-/// outside, (x - c)·normal(c) > 0 for its closest point c, whatever feature c lies on.
+/// outside of a closed mesh, (x - c)·normal(c) > 0 for its closest point c, whatever feature c lies on.
 class ClosedMesh {
  public:
-  /// Throws Error{Input} for an empty, non-finite, open or inside-out mesh, saying where.
-  explicit ClosedMesh(const Mesh& mesh);
+  /// Throws Error{Input} for an empty or non-finite mesh, and unless `may_be_open` for an open or inside-out
+  /// one, saying where.
+  explicit ClosedMesh(const Mesh& mesh, bool may_be_open = false);
 
   const Mesh& mesh() const { return mesh_; }
   const Vec3& pseudonormal(uint32_t triangle, TriangleFeature feature) const;  ///< unit

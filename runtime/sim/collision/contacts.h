@@ -1,28 +1,21 @@
-// Contacts of a plant with solid obstacles and the ground, as springs to the world for the next time step.
+// Contacts of a plant with obstacles and the ground, as springs to the world for the next time step.
 //
-// Every particle is looked at in its centre and its head (its tail is its parent's head, unless it is loose),
-// with the cross-section's own reach towards the surface as radius. A contact is made when the point is
-// inside, or will be by the end of the step.
+// A contact is made when a point is inside, or will be by the end of the step. Contacts that last remember
+// where they hold on: what rests neither slides nor creeps.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "runtime/sim/collision/sdf_obstacle.h"
+#include "runtime/sim/collision/contact_feel.h"
+#include "runtime/sim/collision/probes.h"
 #include "runtime/sim/plant.h"
 #include "runtime/sim/topology.h"
 
 namespace liana {
 
-struct CollisionScene {
-  std::span<const SdfObstacle* const> solids;
-  std::optional<double> ground_height;  ///< m; the ground is a horizontal plane
-};
-
 struct ContactOptions {
-  double friction = 0.6;          ///< Coulomb's coefficient
-  double creep_speed = 2e-3;      ///< m/s, below which friction is viscous
+  ContactFeel ground;             ///< obstacles have their own
   double stiffness_ratio = 1000;  ///< normal stiffness over m/Δt²
   double least_stiffness = 5e3;   ///< N/m
   double push_out_speed = 1.0;    ///< m/s, at which what is deep inside is moved out
@@ -56,14 +49,19 @@ class Contacts {
   ContactReport measure(const Plant& plant, const CollisionScene& scene);
 
  private:
-  using Key = uint64_t;  // particle, probe, solid
+  struct Made {
+    uint64_t key;  // particle, probe, solid
+    Grip grip;
+    bool operator<(const Made& other) const { return key < other.key; }
+  };
   void notice_new_particles(const Plant& plant, const CollisionScene& scene);
-  WorldSpring spring(const Plant& plant, const Motion& motion, size_t particle, const Vec3& point, double gap,
-                     const Vec3& normal) const;
+  WorldSpring spring(const Plant& plant, const Motion& motion, const Gap& found, double to_surface,
+                     Grip& grip) const;
 
   ContactOptions options_;
-  std::vector<uint8_t> exempt_;  // per particle
-  std::vector<Key> made_;        // sorted: the contacts that have a spring in this step
+  Probes probes_;
+  std::vector<uint8_t> exempt_;      // per particle
+  std::vector<Made> made_, before_;  // sorted: the contacts that have a spring in this step; in the last one
 };
 
 }  // namespace liana

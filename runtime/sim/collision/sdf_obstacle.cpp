@@ -11,6 +11,8 @@
 namespace liana {
 namespace {
 
+constexpr double kLeastBand = 4e-2;  // m
+
 /// Trilinear value and gradient (per voxel) inside a cell; f[x + 2y + 4z] at its corners, t in [0, 1]³.
 double interpolate(const double (&f)[8], const Vec3& t, Vec3& gradient) {
   double along_x[4], step_x[4];
@@ -33,11 +35,32 @@ Vec3 gradient_at(const SurfacePoint& closest, const Vec3& x) {
 
 }  // namespace
 
-SdfObstacle::SdfObstacle(const Mesh& mesh, const SdfOptions& options) : surface_(mesh) {
+double geometric_voxel(const Mesh& mesh, double sheet) {
+  Vec3 low = mesh.positions.front(), high = low;
+  for (const Vec3& p : mesh.positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  double area = 0, volume = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+    const Vec3 cross = (b - a).cross(c - a);
+    area += cross.norm() / 2;
+    volume += (a - low).dot(cross) / 6;
+  }
+  const double thickness = sheet > 0 ? sheet : 2 * std::abs(volume) / area;
+  const double wanted = std::min((high - low).maxCoeff() / 128, thickness / 3);
+  const double affordable = std::cbrt(2 * kLeastBand * area / 1e5);
+  return std::max({2e-3, wanted, affordable});
+}
+
+SdfObstacle::SdfObstacle(const Mesh& mesh, const SdfOptions& options)
+    : surface_(mesh, options.sheet), half_sheet_(options.sheet / 2) {
   low_ = high_ = surface_.mesh().positions.front();
   for (const Vec3& p : surface_.mesh().positions) low_ = low_.cwiseMin(p), high_ = high_.cwiseMax(p);
-  voxel_ = options.voxel > 0 ? options.voxel : std::max(2e-3, (high_ - low_).maxCoeff() / 128);
-  band_ = options.band > 0 ? options.band : std::max(4e-2, 3 * voxel_);
+  low_.array() -= half_sheet_;
+  high_.array() += half_sheet_;
+  world_low_ = low_;
+  world_high_ = high_;
+  voxel_ = options.voxel > 0 ? options.voxel : geometric_voxel(surface_.mesh(), options.sheet);
+  band_ = options.band > 0 ? options.band : std::max(kLeastBand, 3 * voxel_);
 
   const double brick = kCells * voxel_;
   const Vec3 extent = high_ - low_ + Vec3::Constant(2 * (band_ + voxel_));
@@ -123,7 +146,33 @@ void SdfObstacle::mark_bent(Brick& brick, const Vec3& corner, const std::vector<
       }
 }
 
+void SdfObstacle::place(const ObstaclePose& pose) {
+  pose_ = pose;
+  back_ = pose.rotation.toRotationMatrix().transpose();
+  placed_ = true;
+  moves_ = !pose.velocity.isZero(0) || !pose.angular_velocity.isZero(0);
+  const Vec3 half = (high_ - low_) / 2, reach = back_.transpose().cwiseAbs() * half;
+  const Vec3 centre = to_world((low_ + high_) / 2);
+  world_low_ = centre - reach;
+  world_high_ = centre + reach;
+}
+
 SdfSample SdfObstacle::sample(const Vec3& x) const {
+  if (!placed_) return sample_mesh(x);
+  SdfSample found = sample_mesh(to_mesh(x));
+  found.gradient = back_.transpose() * found.gradient;
+  return found;
+}
+
+SurfacePoint SdfObstacle::closest_point(const Vec3& x) const {
+  SurfacePoint found = surface_.closest(to_mesh(x));
+  if (!placed_) return found;
+  found.point = to_world(found.point);
+  found.normal = back_.transpose() * found.normal;
+  return found;
+}
+
+SdfSample SdfObstacle::sample_mesh(const Vec3& x) const {
   const Vec3 place = (x - origin_) / voxel_;
   const Vec3 top = (bricks_ * kCells).cast<double>();
   if ((place.array() < 0).any() || (place.array() >= top.array()).any() || !x.allFinite()) {

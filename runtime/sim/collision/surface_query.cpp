@@ -17,7 +17,9 @@ struct SurfaceQuery::Embree {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
 
-  explicit Embree(const Mesh& mesh) : surface(mesh) {
+  double half_sheet = 0;  // m
+
+  Embree(const Mesh& mesh, double sheet) : surface(mesh, sheet > 0), half_sheet(sheet / 2) {
     const Mesh& m = surface.mesh();
     Vec3 low = m.positions.front(), high = low;
     for (const Vec3& p : m.positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -80,7 +82,7 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
 
 }  // namespace
 
-SurfaceQuery::SurfaceQuery(const Mesh& mesh) : embree_(std::make_unique<Embree>(mesh)) {}
+SurfaceQuery::SurfaceQuery(const Mesh& mesh, double sheet) : embree_(std::make_unique<Embree>(mesh, sheet)) {}
 SurfaceQuery::~SurfaceQuery() = default;
 SurfaceQuery::SurfaceQuery(SurfaceQuery&&) noexcept = default;
 SurfaceQuery& SurfaceQuery::operator=(SurfaceQuery&&) noexcept = default;
@@ -101,7 +103,7 @@ SurfacePoint SurfaceQuery::closest(const Vec3& x, double within) const {
   query.y = static_cast<float>(local.y());
   query.z = static_cast<float>(local.z());
   query.time = 0;
-  query.radius = static_cast<float>(within + slack);
+  query.radius = static_cast<float>(within + embree_->half_sheet + slack);
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(embree_->scene, &query, &context, visit, &search);
@@ -109,6 +111,11 @@ SurfacePoint SurfaceQuery::closest(const Vec3& x, double within) const {
 
   const double distance = std::sqrt(search.best.squared_distance);
   const Vec3& normal = embree_->surface.pseudonormal(search.triangle, search.best.feature);
+  if (embree_->half_sheet > 0) {
+    const Vec3 away = distance > 1e-9 ? Vec3((x - search.best.point) / distance) : normal;
+    return {search.best.point + embree_->half_sheet * away, away, distance - embree_->half_sheet,
+            search.triangle};
+  }
   const bool inside = (x - search.best.point).dot(normal) < 0;
   return {search.best.point, normal, inside ? -distance : distance, search.triangle};
 }

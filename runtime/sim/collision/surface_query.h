@@ -1,4 +1,4 @@
-// Exact questions to a closed surface, answered by Embree: the closest point, and whether a ray meets it.
+// Exact questions to a surface, answered by Embree: the closest point, and whether a ray meets it.
 #pragma once
 
 #include <limits>
@@ -19,7 +19,9 @@ struct SurfacePoint {
 /// Safe to ask from several threads. Distances are computed in double; Embree's single precision only prunes.
 class SurfaceQuery {
  public:
-  explicit SurfaceQuery(const Mesh& mesh);  ///< throws Error{Input} as ClosedMesh does
+  /// sheet = 0: the mesh is closed and solid. Above: it is a sheet, open or not, of that thickness (m), of
+  /// which the mesh is the middle; rays meet the middle. Throws Error{Input} as ClosedMesh does.
+  explicit SurfaceQuery(const Mesh& mesh, double sheet = 0);
   ~SurfaceQuery();
   SurfaceQuery(SurfaceQuery&&) noexcept;
   SurfaceQuery& operator=(SurfaceQuery&&) noexcept;

@@ -1,0 +1,291 @@
+#include "runtime/sim/collision/plant_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesher/base/error.h"
+#include "runtime/sim/generalized_alpha.h"
+
+namespace liana {
+namespace {
+
+constexpr double kApart = 5e-4;       // m, beyond which an exempt pair counts as come apart
+constexpr double kImpactSpeed = 0.1;  // m/s, beyond which elasticity shows
+constexpr float kRounding = 1e-5f;    // m, that single precision may take from a box
+
+struct ClosestPoints {
+  double s, t;  // in [-1, 1] along each axis
+};
+
+/// Of the segments p + s u and q + t v, drawn a little to their middles: of nearly parallel ones the closest
+/// points would jump from end to end.
+ClosestPoints closest_points(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& v) {
+  const Vec3 w = p - q;
+  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
+  constexpr double kDrawn = 0.01;
+  const double area = (1 + kDrawn) * (1 + kDrawn) * uu * vv - uv * uv;
+  const double s = std::clamp((uv * vw - (1 + kDrawn) * vv * uw) / area, -1.0, 1.0);
+  const double t = std::clamp((vw + s * uv) / vv, -1.0, 1.0);
+  return {s, t};
+}
+
+/// Half the thickness of an elliptical cross-section along a unit direction of the world.
+double reach_along(const Particle& particle, const Quat& orientation, const Vec3& n) {
+  if (particle.half_width == particle.half_thickness) return particle.half_width;
+  const Vec3 local = orientation.conjugate() * n;
+  return std::hypot(particle.half_width * local.x(), particle.half_thickness * local.z());
+}
+
+}  // namespace
+
+void PlantContacts::look_at(std::span<const Plant* const> plants) {
+  bodies_.clear();
+  boxes_.clear();
+  for (uint32_t k = 0; k < plants.size(); ++k) {
+    const Plant& plant = *plants[k];
+    const double dt = plant.scheme.dt;
+    for (uint32_t i = 0; i < plant.particles.size(); ++i) {
+      const Particle& particle = plant.particles[i];
+      const Motion& m = plant.motion[i];
+      const Vec3 axis = m.orientation * Vec3(0, particle.half_length, 0);
+      const auto radius = static_cast<float>(std::max(particle.half_width, particle.half_thickness));
+      const double way = dt * (m.velocity.norm() + particle.half_length * m.angular_velocity.norm() +
+                               dt / 2 * m.acceleration.norm());
+      const Eigen::Vector3f centre = m.position.cast<float>();
+      const Eigen::Vector3f half =
+          axis.cwiseAbs().cast<float>().array() + (radius + static_cast<float>(way) + kRounding);
+      const bool blade = plant.branches[particle.branch.index()].kind == DomainKind::Leaf;
+      bodies_.push_back({m.position, axis, radius, k, i, blade});
+      boxes_.push_back({centre - half, centre + half});
+    }
+  }
+}
+
+bool PlantContacts::list_holds(std::span<const Plant* const> plants) const {
+  if (sizes_.size() != plants.size()) return false;
+  for (size_t k = 0; k < plants.size(); ++k)
+    if (sizes_[k] != plants[k]->particles.size()) return false;
+  for (size_t i = 0; i < boxes_.size(); ++i) {
+    const FlatBox &now = boxes_[i], &listed = listed_[i];
+    if ((now.low.array() < listed.low.array()).any() || (now.high.array() > listed.high.array()).any())
+      return false;
+  }
+  return true;
+}
+
+void PlantContacts::follow(uint32_t plant, const TopologyChange& change) {
+  std::erase_if(memory_, [&](Memory& m) {
+    for (uint64_t* name : {&m.a, &m.b}) {
+      if (*name >> 32 != plant) continue;
+      const ParticleId now = change.particles[*name & kNone];
+      if (!now.valid()) return true;
+      *name = uint64_t{plant} << 32 | now.index();
+    }
+    return false;
+  });
+  sizes_.clear();  // the list is made anew
+}
+
+void PlantContacts::forget(uint32_t plant) {
+  std::erase_if(memory_, [&](Memory& m) {
+    for (uint64_t* name : {&m.a, &m.b}) {
+      if (*name >> 32 == plant) return true;
+      if (*name >> 32 > plant) *name -= uint64_t{1} << 32;
+    }
+    return false;
+  });
+  sizes_.clear();
+}
+
+// Neighbours in the tree share a joint or nearly so.
+bool PlantContacts::near_kin(std::span<const Plant* const> plants, uint32_t a, uint32_t b) const {
+  if (bodies_[a].plant != bodies_[b].plant) return false;
+  const std::vector<Particle>& all = plants[bodies_[a].plant]->particles;
+  const auto above = [&](uint32_t i) {
+    return i == kNone || !all[i].parent.valid() ? kNone : static_cast<uint32_t>(all[i].parent.index());
+  };
+  const uint32_t i = bodies_[a].particle, j = bodies_[b].particle;
+  const uint32_t pi = above(i), pj = above(j), gi = above(pi), gj = above(pj);
+  return pi == j || pj == i || gi == j || gj == i || (pi == pj && pi != kNone) || (pi == gj && pi != kNone) ||
+         (gi == pj && gi != kNone);
+}
+
+void PlantContacts::rebuild(std::span<const Plant* const> plants) {
+  listed_ = boxes_;
+  size_t body = 0;
+  for (const Plant* plant : plants)
+    for (size_t i = 0; i < plant->particles.size(); ++i, ++body) {
+      // The box holds one step's way already; the list is to last for several.
+      const auto more =
+          static_cast<float>(options_.margin + 3 * plant->scheme.dt * plant->motion[i].velocity.norm());
+      listed_[body].low.array() -= more;
+      listed_[body].high.array() += more;
+    }
+  pairs_.clear();
+  pairs_finder_.find(
+      listed_,
+      [&](uint32_t a, uint32_t b) {
+        return !bodies_[a].blade && !bodies_[b].blade && !near_kin(plants, a, b);
+      },
+      pairs_);
+
+  std::sort(memory_.begin(), memory_.end(),
+            [](const Memory& a, const Memory& b) { return a.key() < b.key(); });
+  remembered_.assign(bodies_.size(), 0);
+  std::vector<size_t> first(plants.size(), 0);
+  for (size_t k = 1; k < plants.size(); ++k) first[k] = first[k - 1] + plants[k - 1]->particles.size();
+  for (const Memory& m : memory_)
+    for (const uint64_t name : {m.a, m.b}) {
+      const size_t plant = name >> 32, particle = name & kNone;
+      if (plant < plants.size() && particle < plants[plant]->particles.size())
+        remembered_[first[plant] + particle] = 1;
+    }
+  candidates_.clear();
+  for (const auto& [a, b] : pairs_) {
+    Candidate candidate{a, b, kNone};
+    if (remembered_[a] && remembered_[b]) {
+      const std::pair key(name(a), name(b));
+      const auto found = std::lower_bound(memory_.begin(), memory_.end(), key,
+                                          [](const Memory& m, const auto& k) { return m.key() < k; });
+      if (found != memory_.end() && found->key() == key)
+        candidate.memory = static_cast<uint32_t>(found - memory_.begin());
+    }
+    candidates_.push_back(candidate);
+  }
+}
+
+PlantContactReport PlantContacts::gather(std::span<const Plant* const> plants,
+                                         std::span<std::vector<WorldSpring>* const> springs) {
+  require(springs.size() == plants.size(), "every plant has a list of springs");
+  PlantContactReport report;
+  look_at(plants);
+  report.rebuilt = !list_holds(plants);
+  if (report.rebuilt) rebuild(plants);
+  next_memory_.clear();
+  for (Candidate& candidate : candidates_) {
+    if (!boxes_[candidate.a].meets(boxes_[candidate.b])) {
+      candidate.memory = kNone;
+      continue;
+    }
+    touch(candidate, plants, springs, report);
+  }
+  memory_.swap(next_memory_);
+  report.candidates = candidates_.size();
+  sizes_.resize(plants.size());
+  for (size_t k = 0; k < plants.size(); ++k) sizes_[k] = plants[k]->particles.size();
+  return report;
+}
+
+void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> plants,
+                          std::span<std::vector<WorldSpring>* const> springs, PlantContactReport& report) {
+  const uint32_t old = std::exchange(candidate.memory, kNone);
+  const Body &a = bodies_[candidate.a], &b = bodies_[candidate.b];
+  const auto [s, t] = closest_points(a.centre, a.axis, b.centre, b.axis);
+  const Vec3 arm_a = s * a.axis, arm_b = t * b.axis;
+  const Vec3 between = a.centre + arm_a - b.centre - arm_b;
+  double distance = between.norm();
+  const Plant &plant_a = *plants[a.plant], &plant_b = *plants[b.plant];
+  const Motion &ma = plant_a.motion[a.particle], &mb = plant_b.motion[b.particle];
+  const double dt = plant_a.scheme.dt;
+  const Vec3 velocity_a = ma.velocity + ma.angular_velocity.cross(arm_a);
+  const Vec3 velocity_b = mb.velocity + mb.angular_velocity.cross(arm_b);
+  const Vec3 velocity = velocity_a - velocity_b, acceleration = ma.acceleration - mb.acceleration;
+  if (distance - a.radius - b.radius > dt * (velocity.norm() + dt / 2 * acceleration.norm()) + kApart) return;
+
+  Memory memory{name(candidate.a), name(candidate.b), Vec3::Zero(), false, {}};
+  if (old != kNone) memory = memory_[old];
+  Vec3 n = distance > 1e-9 ? Vec3(between / distance)
+           : old != kNone  ? memory.normal
+                           : a.axis.cross(b.axis).stableNormalized();
+  // The axes passed each other: what counts is the side that they came from.
+  if (old != kNone && !memory.exempt && n.dot(memory.normal) < 0) n = -n, distance = -distance;
+  const Particle &pa = plant_a.particles[a.particle], &pb = plant_b.particles[b.particle];
+  const double thickness = reach_along(pa, ma.orientation, n) + reach_along(pb, mb.orientation, n);
+  const double gap = distance - thickness;
+
+  const auto is_new = [&](const Body& body) {
+    return body.plant >= sizes_.size() || body.particle >= sizes_[body.plant];
+  };
+  if (old == kNone && gap < 0 && (is_new(a) || is_new(b))) memory.exempt = true;
+  if (memory.exempt && gap < kApart) {
+    ++report.exempt;
+    candidate.memory = static_cast<uint32_t>(next_memory_.size());
+    next_memory_.push_back(memory);
+    return;
+  }
+  memory.exempt = false;
+  const double approach = velocity.dot(n);
+  const double coming = std::min(0.0, dt * approach + dt * dt / 2 * acceleration.dot(n));
+  // What has bounced leaves by itself.
+  if (gap + coming >= 0 || (options_.feel.elasticity > 0 && approach > kImpactSpeed)) return;
+  ++report.contacts;
+  report.max_overlap = std::max(report.max_overlap, -gap);
+  memory.normal = n;
+
+  // Reduced mass, and how much of the way each one goes: k / share has the same frequency for both.
+  const double sum = std::max(pa.mass + pb.mass, 1e-12);
+  const double share_a = std::clamp(pb.mass / sum, 1e-3, 1 - 1e-3);
+  const double reduced = sum * share_a * (1 - share_a);
+  // Springs to the world resist the acceleration of what moves together like a mass of kΔt²: soft where a
+  // touch is light, hard where it would be deep. The force k₀δ (1 + d²), d the depth by thickness, with its
+  // own slope.
+  const double depth = std::min(-(gap + coming) / (0.15 * (thickness + 1e-6)), options_.deepest);
+  const double light = options_.stiffness_ratio * reduced / (dt * dt);
+  const double k = light * (1 + 3 * depth * depth), secant = light * (1 + depth * depth);
+  const GeneralizedAlpha method(plant_a.scheme.rho_infinity);
+  const double at_end = 1 - method.alpha_f;
+
+  const Vec3 sliding = velocity - approach * n;
+  const auto flat = [&](const Vec3& x) { return Vec3(x - x.dot(n) * n); };
+  const Vec3 point_a = ma.orientation.conjugate() * arm_a, point_b = mb.orientation.conjugate() * arm_b;
+  if (!memory.grip.holds) memory.grip.on_a = point_a, memory.grip.on_b = point_b;
+  const Vec3 slip =
+      flat(ma.position + ma.orientation * memory.grip.on_a - mb.position - mb.orientation * memory.grip.on_b);
+  const double limit = options_.feel.friction * at_end * secant * std::max(0.0, -gap);
+  const bool was_slipping = !memory.grip.holds;
+  const FrictionAnswer friction = friction_answer(memory.grip, was_slipping ? Vec3::Zero() : slip, sliding,
+                                                  flat(acceleration), at_end * k, limit, reduced, dt);
+
+  const bool bounces = options_.feel.elasticity > 0 && approach < -kImpactSpeed;
+  const double way = std::min(-gap, options_.push_out_speed * dt);  // to be gone by both together
+  const double push_out = way > 0 ? secant / k * way : way;
+  const double settling = dt * std::clamp(1.25 - std::max(0.0, -approach) * dt / 4e-3, 0.25, 1.0);
+  const Vec3 common = share_a * velocity_b + (1 - share_a) * velocity_a;
+  const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
+  const auto push = [&](const Body& body, const Vec3& arm, const Vec3& point, const Vec3& own, double share,
+                        double sign) {
+    WorldSpring spring;
+    spring.particle = ParticleId(body.particle);
+    spring.on_particle = point;
+    const double stiffness = k / share;
+    spring.target = body.centre + arm +
+                    at_end * (share * sign * (push_out * n + friction.stretch) + dt * common.dot(n) * n);
+    spring.stiffness = stiffness * along;
+    spring.damping = stiffness * settling * along;
+    spring.target_velocity = (method.alpha_f * own + at_end * common).dot(n) * n;
+    if (bounces) {
+      // An impulse is remembered by generalized-α's acceleration: see contacts.cpp.
+      const double gain = method.gamma / (1 - method.alpha_m) * (1 + options_.feel.elasticity);
+      const double end = own.dot(n) + gain * (common - own).dot(n);
+      spring.stiffness.setZero();
+      spring.damping = stiffness * dt * along;
+      spring.target_velocity = (method.alpha_f * own.dot(n) + at_end * end) * n;
+    }
+    if (friction.dashpot > 0) {
+      spring.damping += friction.dashpot / share * across;
+      spring.target_velocity += flat(common);
+    } else if (memory.grip.holds) {
+      spring.target += at_end * dt * flat(common);
+      spring.stiffness += stiffness * across;
+      spring.damping += stiffness * dt * across;
+      spring.target_velocity += flat(method.alpha_f * own + at_end * common);
+    }
+    springs[body.plant]->push_back(spring);
+  };
+  push(a, arm_a, point_a, velocity_a, share_a, 1);
+  push(b, arm_b, point_b, velocity_b, 1 - share_a, -1);
+  candidate.memory = static_cast<uint32_t>(next_memory_.size());
+  next_memory_.push_back(memory);
+}
+
+}  // namespace liana

@@ -1,0 +1,91 @@
+// Contacts between plants, and of a plant with itself, as pairs of springs for the next time step.
+//
+// Stems only: blades are as thin as paper, overlap as they grow, and touch obstacles alone.
+// A particle is a capsule about its axis, with the elliptical cross-section's own reach towards the other as
+// radius. Both particles of a pair are drawn to where the two would meet if only they moved: the lighter one
+// goes most of the way. At rest and for free particles the two pushes are equal and opposite; plants are
+// solved one by one, so in between a branch that is held moves less than foreseen and the pair closes over a
+// few steps.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "runtime/sim/collision/box_pairs.h"
+#include "runtime/sim/collision/contact_feel.h"
+#include "runtime/sim/plant.h"
+#include "runtime/sim/topology.h"
+
+namespace liana {
+
+struct PlantContactOptions {
+  ContactFeel feel;
+  double stiffness_ratio = 10;  ///< normal stiffness of a light touch over reduced mass/Δt²
+  double deepest = 5;           ///< times 0.15 of the thickness: what is deeper, or an impact, is no stiffer
+  double push_out_speed = 0.5;  ///< m/s, at which what is deep inside is moved out
+  double margin = 6e-3;         ///< m that lists of neighbours look ahead at least
+};
+
+struct PlantContactReport {
+  size_t contacts = 0;     ///< pairs that got springs
+  size_t exempt = 0;       ///< pairs that overlapped when first seen and have not come apart since
+  size_t candidates = 0;   ///< pairs in the list
+  bool rebuilt = false;    ///< whether the list was made anew
+  double max_overlap = 0;  ///< m, of the state looked at, without exempt pairs
+};
+
+/// One per world: it keeps the list of neighbours, and what pairs that touch remember.
+class PlantContacts {
+ public:
+  explicit PlantContacts(const PlantContactOptions& options = {}) : options_(options) {}
+
+  /// Appends to springs[k] what plants[k] needs in its next step. All plants must share their time step.
+  PlantContactReport gather(std::span<const Plant* const> plants,
+                            std::span<std::vector<WorldSpring>* const> springs);
+
+  /// plants[plant] lost particles: what is known of the others goes with them.
+  void follow(uint32_t plant, const TopologyChange& change);
+  /// plants[plant] is gone, and those after it moved up.
+  void forget(uint32_t plant);
+
+ private:
+  struct Body {         // of one particle, now
+    Vec3 centre, axis;  // m; axis: half the length
+    float radius;       // m, the largest
+    uint32_t plant, particle;
+    bool blade;
+  };
+  struct Memory {   // of a pair that touches
+    uint64_t a, b;  // plant << 32 | particle
+    Vec3 normal;    // from b to a
+    bool exempt;
+    Grip grip;
+    auto key() const { return std::pair(a, b); }
+  };
+  struct Candidate {
+    uint32_t a, b;
+    uint32_t memory;  // into memory_, or kNone
+  };
+  static constexpr uint32_t kNone = ~0u;
+
+  void look_at(std::span<const Plant* const> plants);
+  bool list_holds(std::span<const Plant* const> plants) const;
+  void rebuild(std::span<const Plant* const> plants);
+  bool near_kin(std::span<const Plant* const> plants, uint32_t a, uint32_t b) const;
+  uint64_t name(uint32_t body) const { return uint64_t{bodies_[body].plant} << 32 | bodies_[body].particle; }
+  void touch(Candidate& candidate, std::span<const Plant* const> plants,
+             std::span<std::vector<WorldSpring>* const> springs, PlantContactReport& report);
+
+  PlantContactOptions options_;
+  BoxPairs pairs_finder_;
+  std::vector<BoxPairs::Pair> pairs_;
+  std::vector<size_t> sizes_;  // of the plants that the list was made for
+  std::vector<Body> bodies_;
+  std::vector<FlatBox> boxes_;   // of now, with the way of one step
+  std::vector<FlatBox> listed_;  // what the list looks at: boxes with a margin
+  std::vector<Candidate> candidates_;
+  std::vector<Memory> memory_, next_memory_;  // sorted by key
+  std::vector<uint8_t> remembered_;           // per body: it is in memory_
+};
+
+}  // namespace liana

@@ -1,0 +1,46 @@
+// Where a plant is near solids: the points of its particles that may touch one in the coming step.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "runtime/sim/collision/sdf_obstacle.h"
+#include "runtime/sim/plant.h"
+
+namespace liana {
+
+struct CollisionScene {
+  std::span<const SdfObstacle* const>
+      solids;                           ///< where they are at the end of the step, with their velocities
+  std::optional<double> ground_height;  ///< m; the ground is a horizontal plane
+};
+
+/// What a probe of a particle finds at one solid: where it touches first, and how far that is.
+struct Gap {
+  size_t particle;
+  uint64_t key;              ///< particle, probe and solid; ascending in the order of visits
+  const SdfObstacle* solid;  ///< null: the ground
+  Vec3 point;                ///< m, particle's frame: what a spring holds
+  double gap;                ///< m, negative inside; now, before the solid moves
+  Vec3 normal;               ///< unit, away from the solid
+};
+
+/// The gaps of every probe of particles from `first` on that can get into something within dt, as they move
+/// now; with dt = 0, those of the present with solids where they stand. Probes: centre and head of a particle
+/// (its tail is its parent's head, unless it is loose), and the point between that is nearest to a thin
+/// solid.
+class Probes {
+ public:
+  const std::vector<Gap>& look(const Plant& plant, const CollisionScene& scene, double dt, size_t first = 0);
+
+ private:
+  void look(const Plant& plant, const CollisionScene& scene, double dt, size_t first, size_t last);
+  void at(const Plant& plant, size_t particle, uint64_t probe, double along, double dt,
+          const SdfObstacle* solid, uint64_t number, double ground);
+
+  std::vector<uint32_t> near_;  // solids near the particles at hand
+  std::vector<Gap> gaps_;
+};
+
+}  // namespace liana
