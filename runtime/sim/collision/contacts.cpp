@@ -56,7 +56,8 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, const Gap
   const Vec3 own = motion.velocity + motion.angular_velocity.cross(arm);
   const Vec3 velocity = own - surface;
   const double approach = velocity.dot(n);
-  const double k = std::max(options_.stiffness_ratio * mass / (dt * dt), options_.least_stiffness);
+  const double hold_stiffness = options_.stiffness_ratio * mass / (dt * dt);  // N/m, across
+  const double k = std::max(hold_stiffness, options_.least_stiffness);
   const double coming = std::max(0.0, -approach) * dt / kImpact;
   const double settling = dt * std::clamp(1.25 - coming / 4, 0.25, 1.0);  // τ
   const Mat3 normal = n * n.transpose(), across = Mat3::Identity() - normal;
@@ -72,7 +73,7 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, const Gap
       std::max(at_end * k * std::max(0.0, -found.gap),
                mass * std::max(0.0, -approach - std::max(0.0, found.gap) / dt) / dt);  // N
   const FrictionAnswer friction = friction_answer(grip, slip, across * velocity, across * motion.acceleration,
-                                                  at_end * k, feel.friction * pressing, mass, dt);
+                                                  at_end * hold_stiffness, feel.friction * pressing, mass, dt);
 
   // To the surface, along n.
   const double way = std::min(-to_surface, options_.push_out_speed * dt + dt * std::max(0.0, surface.dot(n)));
@@ -94,8 +95,8 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, const Gap
     spring.target_velocity += across * surface;
   } else if (grip.holds) {
     spring.target += at_end * dt * across * surface;
-    spring.stiffness += k * across;
-    spring.damping += k * dt * across;
+    spring.stiffness += hold_stiffness * across;
+    spring.damping += hold_stiffness * dt * across;
     spring.target_velocity += across * (method.alpha_f * own + at_end * surface);
   }
   return spring;

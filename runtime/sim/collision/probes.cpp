@@ -9,6 +9,7 @@ namespace {
 
 constexpr size_t kAtOnce = 32;   // neighbours in the arrays are neighbours in space
 constexpr double kSlow = 5e-3;   // m a step, below which the solid is a half space
+constexpr uint64_t kBetween = 3;  // the probe between the ends
 constexpr double kTouch = 2e-4;  // m, at which a sweep has arrived
 
 /// A plane that touches a solid where it is closest to a point.
@@ -121,7 +122,7 @@ void Probes::look(const Plant& plant, const CollisionScene& scene, double dt, si
       const SdfObstacle& solid = *scene.solids[s];
       const Vec3 shift = dt * solid.velocity_at(plant.motion[i].position);
       if (const auto between = thin_between(particle, plant.motion[i], solid, shift, reach + shift.norm()))
-        at(plant, i, 3, *between, dt, &solid, s + 1, ground);
+        at(plant, i, kBetween, *between, dt, &solid, s + 1, ground);
     }
   }
 }
@@ -166,10 +167,20 @@ void Probes::at(const Plant& plant, size_t i, uint64_t probe, double along, doub
   // Beside an edge the solid is no half space: what counts is the distance of the point itself.
   const Nearest found = nearest_to(x + motion.orientation * arm);
   if (found.distance > reach) return;
+  double gap = found.distance + (start - x).dot(found.normal);
+  Vec3 normal = found.normal;
+  if (probe == kBetween && gap < 0) {
+    // An axis that crosses an edge goes out across itself: straight out of a face, it would go to and fro
+    // between the two that meet there.
+    const Vec3 along_axis = motion.orientation * Vec3::UnitY();
+    const Vec3 across = normal - normal.dot(along_axis) * along_axis;
+    const double cosine = across.norm();
+    if (cosine > 0.5) normal = across / cosine, gap /= cosine;
+  }
   // A round stem is held at its axis: held at its skin, a point that turns with it, it would be rolled over
   // by its own weight.
   gaps_.push_back({i, (uint64_t(i) * 4 + probe) << 16 | number, solid, blade ? Vec3(on_axis + arm) : on_axis,
-                   found.distance + (start - x).dot(found.normal), found.normal});
+                   gap, normal});
 }
 
 }  // namespace liana
