@@ -72,8 +72,9 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, const Gap
   const double pressing =
       std::max(at_end * k * std::max(0.0, -found.gap),
                mass * std::max(0.0, -approach - std::max(0.0, found.gap) / dt) / dt);  // N
-  const FrictionAnswer friction = friction_answer(grip, slip, across * velocity, across * motion.acceleration,
-                                                  at_end * hold_stiffness, feel.friction * pressing, mass, dt);
+  const FrictionAnswer friction =
+      friction_answer(grip, slip, across * velocity, across * motion.acceleration, at_end * hold_stiffness,
+                      feel.friction * pressing, mass, dt);
 
   // To the surface, along n.
   const double way = std::min(-to_surface, options_.push_out_speed * dt + dt * std::max(0.0, surface.dot(n)));

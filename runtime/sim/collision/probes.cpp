@@ -7,10 +7,10 @@
 namespace liana {
 namespace {
 
-constexpr size_t kAtOnce = 32;   // neighbours in the arrays are neighbours in space
-constexpr double kSlow = 5e-3;   // m a step, below which the solid is a half space
+constexpr size_t kAtOnce = 32;    // neighbours in the arrays are neighbours in space
+constexpr double kSlow = 5e-3;    // m a step, below which the solid is a half space
 constexpr uint64_t kBetween = 3;  // the probe between the ends
-constexpr double kTouch = 2e-4;  // m, at which a sweep has arrived
+constexpr double kTouch = 2e-4;   // m, at which a sweep has arrived
 
 /// A plane that touches a solid where it is closest to a point.
 struct Nearest {
@@ -133,7 +133,8 @@ void Probes::at(const Plant& plant, size_t i, uint64_t probe, double along, doub
   const Motion& motion = plant.motion[i];
   const bool blade = plant.branches[particle.branch.index()].kind == DomainKind::Leaf;
   // A blade is widest in the middle and ends in a point; a stem is a cylinder.
-  const double width = blade ? std::sqrt(std::max(0.0, 1 - along * along)) : 1;
+  // Between its middle and its ends its axis counts alone: its rims would take turns.
+  const double width = blade && probe != 0 ? 0 : 1;
   const Vec3 on_axis(0, along * particle.half_length, 0);
   const Vec3 arm_to_axis = motion.orientation * on_axis;
   // Seen from the solid, which stands where it will be, the point starts as far ahead as the solid moves.
@@ -167,15 +168,14 @@ void Probes::at(const Plant& plant, size_t i, uint64_t probe, double along, doub
   // Beside an edge the solid is no half space: what counts is the distance of the point itself.
   const Nearest found = nearest_to(x + motion.orientation * arm);
   if (found.distance > reach) return;
-  double gap = found.distance + (start - x).dot(found.normal);
+  const double gap = found.distance + (start - x).dot(found.normal);
   Vec3 normal = found.normal;
   if (probe == kBetween && gap < 0) {
-    // An axis that crosses an edge goes out across itself: straight out of a face, it would go to and fro
-    // between the two that meet there.
-    const Vec3 along_axis = motion.orientation * Vec3::UnitY();
-    const Vec3 across = normal - normal.dot(along_axis) * along_axis;
-    const double cosine = across.norm();
-    if (cosine > 0.5) normal = across / cosine, gap /= cosine;
+    // What an edge crosses goes out across itself: along the normals of the two faces that meet there it
+    // would go to and fro, or be pushed along itself.
+    const Vec3 axis = motion.orientation * Vec3::UnitY(), plane = motion.orientation * Vec3::UnitZ();
+    const Vec3 across = blade ? Vec3(normal.dot(plane) * plane) : Vec3(normal - normal.dot(axis) * axis);
+    if (across.norm() > 0.1) normal = across.normalized();
   }
   // A round stem is held at its axis: held at its skin, a point that turns with it, it would be rolled over
   // by its own weight.
