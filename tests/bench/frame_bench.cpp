@@ -16,7 +16,7 @@ Scene ivies(size_t count, size_t particles) {
   Scene scene;
   scene.wind.velocity = {2.5, 0, 0.8};
   const double reach = kApart * static_cast<double>(count) / 2;
-  scene.obstacles.push_back({"wall", box_mesh({-reach, 0, -0.25}, {reach, 3, 0}), Vec3::Zero(), false});
+  scene.obstacles.push_back({"wall", box_mesh({-reach, 0, -0.25}, {reach, 3, 0}), Vec3::Zero(), false, {}, {}, {}});
   for (size_t i = 0; i < count; ++i)
     scene.climbers.push_back({.bake = {},
                               .species = "ivy",

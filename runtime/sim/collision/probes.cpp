@@ -28,11 +28,6 @@ Nearest nearest(const SdfObstacle& solid, const Vec3& x, double reach) {
   return {exact.distance, std::abs(exact.distance) > 1e-9 ? Vec3(away / exact.distance) : exact.normal};
 }
 
-double exact_distance(const SdfObstacle& solid, const Vec3& x) {
-  const double d = solid.distance(x);
-  return std::abs(d) < solid.band() ? d : solid.closest_point(x).distance;
-}
-
 /// The point of an elliptical cross-section furthest along -normal, in the particle's frame, from its axis.
 Vec3 reach_towards(const Particle& particle, const Vec3& local_normal, double scale) {
   const double a = particle.half_width * scale, b = particle.half_thickness * scale;
@@ -44,33 +39,6 @@ Vec3 reach_towards(const Particle& particle, const Vec3& local_normal, double sc
 double travel_of(const Particle& particle, const Motion& motion, double dt) {
   return dt * (motion.velocity.norm() + particle.half_length * motion.angular_velocity.norm() +
                dt * motion.acceleration.norm() / 2);
-}
-
-/// Where on its axis, in [-1, 1], a particle is nearest to a solid, when that is neither an end nor the
-/// middle. The distance to a convex solid along a line is convex.
-std::optional<double> thin_between(const Particle& particle, const Motion& motion, const SdfObstacle& solid,
-                                   const Vec3& shift, double reach) {
-  const Vec3 axis = motion.orientation * Vec3(0, particle.half_length, 0), centre = motion.position + shift;
-  const double middle = solid.distance(centre);
-  if (middle > particle.half_length + reach) return {};
-  const auto distance = [&](double s) { return exact_distance(solid, centre + s * axis); };
-  const double tail = distance(-1), mid = distance(0), head = distance(1);
-  if (std::abs(head + tail - 2 * mid) < kTouch) return {};  // flat
-  double low = head < tail ? 0 : -1, high = low + 1;
-  if (mid < head && mid < tail) low = -1, high = 1;
-  constexpr double kGolden = 0.61803398874989485;
-  double a = high - kGolden * (high - low), b = low + kGolden * (high - low), da = distance(a),
-         db = distance(b);
-  for (int i = 0; i < 9; ++i) {
-    if (da < db) {
-      high = b, b = a, db = da, a = high - kGolden * (high - low), da = distance(a);
-    } else {
-      low = a, a = b, da = db, b = low + kGolden * (high - low), db = distance(b);
-    }
-  }
-  const double best = std::min(da, db);
-  if (best > reach || best > std::min({tail, mid, head}) - kTouch) return {};
-  return da < db ? a : b;
 }
 
 }  // namespace
@@ -109,78 +77,151 @@ void Probes::look(const Plant& plant, const CollisionScene& scene, double dt, si
   if (near_.empty() && !near_ground) return;
 
   for (size_t i = first; i < last; ++i) {
-    const Particle& particle = plant.particles[i];
-    const uint64_t probes = particle.joint.shear_stiffness.isZero(0) ? 3 : 2;
-    constexpr double kAlong[] = {0, 1, -1};
-    for (uint64_t p = 0; p < probes; ++p) {
-      if (near_ground) at(plant, i, p, kAlong[p], dt, nullptr, 0, ground);
-      for (const uint32_t s : near_) at(plant, i, p, kAlong[p], dt, scene.solids[s], s + 1, ground);
-    }
-    const double reach =
-        std::max(particle.half_width, particle.half_thickness) + travel_of(particle, plant.motion[i], dt);
-    for (const uint32_t s : near_) {
-      const SdfObstacle& solid = *scene.solids[s];
-      const Vec3 shift = dt * solid.velocity_at(plant.motion[i].position);
-      if (const auto between = thin_between(particle, plant.motion[i], solid, shift, reach + shift.norm()))
-        at(plant, i, kBetween, *between, dt, &solid, s + 1, ground);
-    }
+    if (near_ground) look_at(plant, i, dt, nullptr, 0, ground);
+    for (const uint32_t s : near_) look_at(plant, i, dt, scene.solids[s], s + 1, ground);
   }
 }
 
-void Probes::at(const Plant& plant, size_t i, uint64_t probe, double along, double dt,
-                const SdfObstacle* solid, uint64_t number, double ground) {
-  const Particle& particle = plant.particles[i];
-  const Motion& motion = plant.motion[i];
-  const bool blade = plant.branches[particle.branch.index()].kind == DomainKind::Leaf;
-  // A blade is widest in the middle and ends in a point; a stem is a cylinder.
-  // Between its middle and its ends its axis counts alone: its rims would take turns.
-  const double width = blade && probe != 0 ? 0 : 1;
-  const Vec3 on_axis(0, along * particle.half_length, 0);
-  const Vec3 arm_to_axis = motion.orientation * on_axis;
-  // Seen from the solid, which stands where it will be, the point starts as far ahead as the solid moves.
-  const Vec3 solid_velocity = solid ? solid->velocity_at(motion.position + arm_to_axis) : Vec3::Zero();
-  const Vec3 start = motion.position + arm_to_axis + dt * solid_velocity;
-  const Vec3 way = dt * (motion.velocity + motion.angular_velocity.cross(arm_to_axis) - solid_velocity +
-                         dt / 2 * motion.acceleration);
-  const double radius = std::max(particle.half_width, particle.half_thickness) * width;
-  const double reach = radius + way.norm();
-  const auto nearest_to = [&](const Vec3& x) {
-    return solid ? nearest(*solid, x, reach) : Nearest{x.y() - ground, Vec3::UnitY()};
+/// What one particle sees of one solid.
+class Probes::View {
+ public:
+  View(const Plant& plant, size_t i, double dt, const SdfObstacle* solid, double ground)
+      : particle_(plant.particles[i]),
+        motion_(plant.motion[i]),
+        dt_(dt),
+        solid_(solid),
+        ground_(ground),
+        blade_(plant.branches[particle_.branch.index()].kind == DomainKind::Leaf),
+        axis_(motion_.orientation * Vec3(0, particle_.half_length, 0)) {}
+
+  /// A point of the axis, and what of the solid is nearest to it when it is not beyond `reach`.
+  struct Point {
+    double along;  // in [-1, 1]
+    Vec3 start, way;
+    Nearest found;
+    double slope = 0;  // of the distance, m per unit of `along`
   };
-  Vec3 x = start;
-  Nearest on_axis_found = nearest_to(x);
-  if (on_axis_found.distance > reach) return;
-  // Fast ones are followed to where they arrive: a bar that they pass by is no wall.
-  const double length = way.norm();
-  if (solid && length > kSlow && on_axis_found.distance > radius) {
-    double gone = 0;
-    for (int i = 0; i < 64; ++i) {
-      const double free = on_axis_found.distance - radius;
-      if (free < kTouch) break;
-      gone += free;
-      if (gone > length) return;
-      x = start + gone / length * way;
-      on_axis_found = nearest_to(x);
-      if (!std::isfinite(on_axis_found.distance)) return;
+
+  // Seen from the solid, which stands where it will be, the point starts as far ahead as the solid moves.
+  Point at(double along, double reach) const {
+    const Vec3 arm = along * axis_, x = motion_.position + arm;
+    const Vec3 surface = solid_ ? solid_->velocity_at(x) : Vec3::Zero();
+    const Vec3 velocity = motion_.velocity + motion_.angular_velocity.cross(arm) - surface;
+    Point point{along, x + dt_ * surface, dt_ * (velocity + dt_ / 2 * motion_.acceleration), {}};
+    point.found = nearest_to(point.start, reach);
+    point.slope = point.found.normal.dot(axis_);
+    return point;
+  }
+
+  Nearest nearest_to(const Vec3& x, double reach) const {
+    return solid_ ? nearest(*solid_, x, reach) : Nearest{x.y() - ground_, Vec3::UnitY()};
+  }
+
+  bool blade() const { return blade_; }
+
+  /// Where an edge of the solid crosses the axis between the middle and an end, or comes nearest to it. The
+  /// distance to a convex solid along a line is convex: tangents meet below it.
+  std::optional<Point> between(const Point& middle, const Point& head, double reach) const {
+    double least = std::min({middle.found.distance, head.found.distance, reach + kTouch});
+    const auto no_better = [&](double bound) { return bound > least - kTouch; };
+    Point low = middle, high = head;
+    if (middle.slope > 0) {
+      if (no_better(middle.found.distance - middle.slope)) return {};
+      high = middle;
+      low = at(-1, kFar);
+      least = std::min(least, low.found.distance);
     }
+    std::optional<Point> best;
+    constexpr int kMostCuts = 8;
+    for (int i = 0; i < kMostCuts && low.slope < 0 && high.slope > 0; ++i) {
+      const double meet =
+          (high.found.distance - high.slope * high.along - low.found.distance + low.slope * low.along) /
+          (low.slope - high.slope);
+      if (no_better(low.found.distance + low.slope * (meet - low.along))) break;
+      const Point cut = at(std::clamp(meet, low.along, high.along), kFar);
+      if (cut.found.distance < least) least = cut.found.distance, best = cut;
+      (cut.slope < 0 ? low : high) = cut;
+    }
+    return best;
   }
-  const Vec3 arm = reach_towards(particle, motion.orientation.conjugate() * on_axis_found.normal, width);
-  // Beside an edge the solid is no half space: what counts is the distance of the point itself.
-  const Nearest found = nearest_to(x + motion.orientation * arm);
-  if (found.distance > reach) return;
-  const double gap = found.distance + (start - x).dot(found.normal);
-  Vec3 normal = found.normal;
-  if (probe == kBetween && gap < 0) {
-    // What an edge crosses goes out across itself: along the normals of the two faces that meet there it
-    // would go to and fro, or be pushed along itself.
-    const Vec3 axis = motion.orientation * Vec3::UnitY(), plane = motion.orientation * Vec3::UnitZ();
-    const Vec3 across = blade ? Vec3(normal.dot(plane) * plane) : Vec3(normal - normal.dot(axis) * axis);
-    if (across.norm() > 0.1) normal = across.normalized();
+
+  /// Its gap, when it may touch within the step.
+  std::optional<Gap> gap(const Point& point, bool crossed) const {
+    // A blade is widest in the middle and ends in a point; a stem is a cylinder. Between its middle and its
+    // ends a blade's axis counts alone: its rims would take turns.
+    const double width = blade_ && point.along != 0 ? 0 : 1;
+    const double radius = std::max(particle_.half_width, particle_.half_thickness) * width;
+    const double length = point.way.norm(), reach = radius + length;
+    Vec3 x = point.start;
+    Nearest on_axis_found = point.found;
+    if (on_axis_found.distance > reach) return {};
+    // Fast ones are followed to where they arrive: a bar that they pass by is no wall.
+    if (solid_ && length > kSlow && on_axis_found.distance > radius) {
+      double gone = 0;
+      for (int i = 0; i < 64; ++i) {
+        const double free = on_axis_found.distance - radius;
+        if (free < kTouch) break;
+        gone += free;
+        if (gone > length) return {};
+        x = point.start + gone / length * point.way;
+        on_axis_found = nearest_to(x, reach);
+        if (!std::isfinite(on_axis_found.distance)) return {};
+      }
+    }
+    const Vec3 arm = reach_towards(particle_, motion_.orientation.conjugate() * on_axis_found.normal, width);
+    // Beside an edge the solid is no half space: what counts is the distance of the point itself.
+    const Nearest found = nearest_to(x + motion_.orientation * arm, reach);
+    if (found.distance > reach) return {};
+    const double gap = found.distance + (point.start - x).dot(found.normal);
+    Vec3 normal = found.normal;
+    if (crossed && gap < 0) {
+      // What an edge crosses goes out across itself: along the normals of the two faces that meet there it
+      // would go to and fro, or be pushed along itself.
+      const Vec3 axis = motion_.orientation * Vec3::UnitY(), plane = motion_.orientation * Vec3::UnitZ();
+      const Vec3 across = blade_ ? Vec3(normal.dot(plane) * plane) : Vec3(normal - normal.dot(axis) * axis);
+      if (across.norm() > 0.1) normal = across.normalized();
+    }
+    // A round stem is held at its axis: held at its skin, a point that turns with it, it would be rolled over
+    // by its own weight.
+    const Vec3 on_axis(0, point.along * particle_.half_length, 0);
+    return Gap{0, 0, solid_, blade_ ? Vec3(on_axis + arm) : on_axis, gap, normal};
   }
-  // A round stem is held at its axis: held at its skin, a point that turns with it, it would be rolled over
-  // by its own weight.
-  gaps_.push_back({i, (uint64_t(i) * 4 + probe) << 16 | number, solid, blade ? Vec3(on_axis + arm) : on_axis,
-                   gap, normal});
+
+ private:
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+  const Particle& particle_;
+  const Motion& motion_;
+  double dt_;
+  const SdfObstacle* solid_;
+  double ground_;
+  bool blade_;
+  Vec3 axis_;
+};
+
+void Probes::look_at(const Plant& plant, size_t i, double dt, const SdfObstacle* solid, uint64_t number,
+                     double ground) {
+  const Particle& particle = plant.particles[i];
+  double travel = travel_of(particle, plant.motion[i], dt);
+  if (solid && solid->moves())
+    travel += dt * (solid->velocity_at(plant.motion[i].position).norm() +
+                    solid->pose().angular_velocity.norm() * particle.half_length);
+  const double reach = std::max(particle.half_width, particle.half_thickness) + travel;
+  const View view(plant, i, dt, solid, ground);
+  const View::Point middle = view.at(0, reach + particle.half_length);
+  if (!std::isfinite(middle.found.distance)) return;
+  const auto note = [&](const View::Point& point, uint64_t probe) {
+    auto gap = view.gap(point, probe == kBetween);
+    if (!gap) return;
+    gap->particle = i;
+    gap->key = (uint64_t(i) << 16 | number) << 2 | probe;
+    gaps_.push_back(*gap);
+  };
+  const View::Point head = view.at(1, reach + 2 * particle.half_length);
+  note(middle, 0);
+  note(head, 1);
+  if (particle.joint.shear_stiffness.isZero(0)) note(view.at(-1, reach), 2);
+  if (solid)
+    if (const auto crossed = view.between(middle, head, reach)) note(*crossed, kBetween);
 }
 
 }  // namespace liana

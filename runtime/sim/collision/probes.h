@@ -19,7 +19,7 @@ struct CollisionScene {
 /// What a probe of a particle finds at one solid: where it touches first, and how far that is.
 struct Gap {
   size_t particle;
-  uint64_t key;              ///< particle, probe and solid; ascending in the order of visits
+  uint64_t key;              ///< particle, solid and probe; ascending in the order of visits
   const SdfObstacle* solid;  ///< null: the ground
   Vec3 point;                ///< m, particle's frame: what a spring holds
   double gap;                ///< m, negative inside; now, before the solid moves
@@ -35,9 +35,10 @@ class Probes {
   const std::vector<Gap>& look(const Plant& plant, const CollisionScene& scene, double dt, size_t first = 0);
 
  private:
+  class View;
   void look(const Plant& plant, const CollisionScene& scene, double dt, size_t first, size_t last);
-  void at(const Plant& plant, size_t particle, uint64_t probe, double along, double dt,
-          const SdfObstacle* solid, uint64_t number, double ground);
+  void look_at(const Plant& plant, size_t particle, double dt, const SdfObstacle* solid, uint64_t number,
+               double ground);
 
   std::vector<uint32_t> near_;  // solids near the particles at hand
   std::vector<Gap> gaps_;
