@@ -179,7 +179,7 @@ class Probes::View {
       // would go to and fro, or be pushed along itself.
       const Vec3 axis = motion_.orientation * Vec3::UnitY(), plane = motion_.orientation * Vec3::UnitZ();
       const Vec3 across = blade_ ? Vec3(normal.dot(plane) * plane) : Vec3(normal - normal.dot(axis) * axis);
-      if (across.norm() > 0.1) normal = across.normalized();
+      if (across.norm() > 0.03) normal = across.normalized();
     }
     // A round stem is held at its axis: held at its skin, a point that turns with it, it would be rolled over
     // by its own weight.
