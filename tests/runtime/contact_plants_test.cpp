@@ -216,16 +216,26 @@ TEST(PlantContacts, NeighboursAreFoundWhateverTheirSizes) {
     const float half = i % 100 == 0 ? 0.4f : 0.01f + 0.03f * random();
     boxes.push_back({centre.array() - half, centre.array() + half});
   }
-  std::vector<BoxPairs::Pair> found, expected;
-  BoxPairs finder;
-  finder.find(
-      boxes, [](uint32_t, uint32_t) { return true; }, found);
-  for (uint32_t i = 0; i < boxes.size(); ++i)
-    for (uint32_t j = i + 1; j < boxes.size(); ++j)
-      if (boxes[i].meets(boxes[j])) expected.emplace_back(i, j);
-  std::sort(found.begin(), found.end());
-  EXPECT_EQ(found, expected);
-  EXPECT_GT(expected.size(), 1000u);
+  // Numbers of boxes that fill no level of the tree, too.
+  for (const size_t count : {size_t{0}, size_t{1}, size_t{5}, size_t{77}, boxes.size()}) {
+    const std::span some(boxes.data(), count);
+    std::vector<std::pair<uint32_t, uint32_t>> found, asked, expected;
+    BoxPairs finder;
+    finder.fit(some);
+    finder.all([&](uint32_t a, uint32_t b) { found.emplace_back(a, b); });
+    for (uint32_t i = 0; i < count; ++i) {
+      finder.of(i, [&](uint32_t other) {
+        if (i < other) asked.emplace_back(i, other);
+      });
+      for (uint32_t j = i + 1; j < count; ++j)
+        if (boxes[i].meets(boxes[j])) expected.emplace_back(i, j);
+    }
+    std::sort(found.begin(), found.end());
+    std::sort(asked.begin(), asked.end());
+    EXPECT_EQ(found, expected);
+    EXPECT_EQ(asked, expected);
+    EXPECT_EQ(expected.size() > 1000, count == boxes.size());
+  }
 }
 
 }  // namespace

@@ -1,38 +1,37 @@
 #include "runtime/sim/collision/box_pairs.h"
 
-#include <bit>
-
 namespace liana {
+namespace {
 
-void BoxPairs::sort_into_cells(std::span<const FlatBox> boxes) {
-  large_.clear();
-  entries_.clear();
-  double sum = 0;
-  for (const FlatBox& b : boxes) sum += (b.high - b.low).maxCoeff();
-  const float cell = boxes.empty() ? 1.0f : static_cast<float>(std::max(1e-3, 1.5 * sum / boxes.size()));
-  per_cell_ = 1 / cell;
-  mask_ = static_cast<uint32_t>(std::bit_ceil(2 * boxes.size() + 2)) - 1;
-  first_.assign(mask_ + 2, 0);
-  for (uint32_t i = 0; i < boxes.size(); ++i) {
-    const Cell low = cell_of(boxes[i].low), high = cell_of(boxes[i].high);
-    const auto across = (high - low).cast<int64_t>().array() + 1;
-    if ((across > 64).any() || across.prod() > 64) {
-      large_.push_back(i);
-      continue;
+/// Of every `count` boxes in turn, the box around them.
+void enclose(std::span<const FlatBox> boxes, uint32_t count, std::vector<FlatBox>& around) {
+  around.resize((boxes.size() + count - 1) / count);
+  for (size_t i = 0; i < around.size(); ++i) {
+    around[i] = boxes[i * count];
+    for (size_t j = i * count + 1; j < std::min(boxes.size(), (i + 1) * count); ++j) {
+      around[i].low = around[i].low.cwiseMin(boxes[j].low);
+      around[i].high = around[i].high.cwiseMax(boxes[j].high);
     }
-    Cell c;
-    for (c.z() = low.z(); c.z() <= high.z(); ++c.z())
-      for (c.y() = low.y(); c.y() <= high.y(); ++c.y())
-        for (c.x() = low.x(); c.x() <= high.x(); ++c.x()) {
-          entries_.push_back({c, i});
-          ++first_[bucket_of(c) + 1];
-        }
   }
-  for (size_t k = 1; k < first_.size(); ++k) first_[k] += first_[k - 1];
-  sorted_.resize(entries_.size());
-  for (const Entry& entry : entries_) sorted_[first_[bucket_of(entry.cell)]++] = entry;
-  for (size_t k = first_.size() - 1; k > 0; --k) first_[k] = first_[k - 1];
-  first_[0] = 0;
+}
+
+}  // namespace
+
+void BoxPairs::fit(std::span<const FlatBox> boxes) {
+  boxes_ = boxes;
+  size_t levels = 0;
+  if (!boxes.empty()) {
+    const auto level = [&]() -> std::vector<FlatBox>& {
+      if (levels == levels_.size()) levels_.emplace_back();
+      return levels_[levels++];
+    };
+    enclose(boxes, kGroup, level());
+    while (levels_[levels - 1].size() > 1) {
+      std::vector<FlatBox>& next = level();
+      enclose(levels_[levels - 2], 2, next);
+    }
+  }
+  levels_.resize(levels);
 }
 
 }  // namespace liana

@@ -1,4 +1,4 @@
-// Which of many small boxes overlap: cells sorted by counting, no grid over empty space.
+// Which of many small boxes overlap, when neighbours in their order are neighbours in space.
 #pragma once
 
 #include <algorithm>
@@ -19,61 +19,73 @@ struct FlatBox {
   }
 };
 
-/// Owns the working memory: keep it. Every box is entered in the cells that it overlaps; boxes far larger
-/// than most (trunks) are held against all others instead. The order of the pairs is a function of the boxes
-/// alone.
+/// A binary tree over the boxes in their order, groups of four at its ends: made anew for moved boxes in one
+/// pass over them. The order of what it finds is a function of the boxes alone. Keep it: it owns its memory.
 class BoxPairs {
  public:
-  using Pair = std::pair<uint32_t, uint32_t>;  ///< first < second
+  void fit(std::span<const FlatBox> boxes);
 
-  /// Appends every pair of boxes that overlap and for which wanted(first, second).
-  template <class Wanted>
-  void find(std::span<const FlatBox> boxes, const Wanted& wanted, std::vector<Pair>& pairs);
+  /// Calls visit(first, second), first < second, for every pair of boxes that overlap.
+  template <class Visit>
+  void all(const Visit& visit) const {
+    if (!levels_.empty()) within(levels_.size() - 1, 0, visit);
+  }
+  /// Calls visit(other) for every box that overlaps the one with this number, itself included.
+  template <class Visit>
+  void of(uint32_t number, const Visit& visit) const {
+    if (!levels_.empty()) meeting(levels_.size() - 1, 0, boxes_[number], visit);
+  }
 
  private:
-  struct Entry {
-    Eigen::Vector3i cell;
-    uint32_t box;
-  };
-  using Cell = Eigen::Vector3i;
-  Cell cell_of(const Eigen::Vector3f& x) const { return (x * per_cell_).array().floor().cast<int>(); }
-  size_t bucket_of(const Cell& c) const {
-    const auto hash = static_cast<uint32_t>(c.x()) * 0x8da6b343u +
-                      static_cast<uint32_t>(c.y()) * 0xd8163841u + static_cast<uint32_t>(c.z()) * 0xcb1ab31fu;
-    return (hash ^ hash >> 15) & mask_;
-  }
-  void sort_into_cells(std::span<const FlatBox> boxes);
+  static constexpr uint32_t kGroup = 4;
 
-  float per_cell_ = 1;  // 1/m
-  uint32_t mask_ = 0;
-  std::vector<uint32_t> first_;  // of each bucket, into sorted_
-  std::vector<Entry> entries_, sorted_;
-  std::vector<uint32_t> large_;
-};
-
-template <class Wanted>
-void BoxPairs::find(std::span<const FlatBox> boxes, const Wanted& wanted, std::vector<Pair>& pairs) {
-  sort_into_cells(boxes);
-  const auto offer = [&](uint32_t a, uint32_t b) {
-    const Pair pair = std::minmax(a, b);
-    if (wanted(pair.first, pair.second)) pairs.push_back(pair);
-  };
-  for (size_t k = 0; k + 1 < first_.size(); ++k)
-    for (uint32_t i = first_[k]; i < first_[k + 1]; ++i)
-      for (uint32_t j = i + 1; j < first_[k + 1]; ++j) {
-        const Entry &a = sorted_[i], &b = sorted_[j];
-        if (a.cell != b.cell || !boxes[a.box].meets(boxes[b.box])) continue;
-        // Both may lie in several cells: the one with the low corner of what they share counts.
-        if (cell_of(boxes[a.box].low.cwiseMax(boxes[b.box].low)) == a.cell) offer(a.box, b.box);
-      }
-  for (size_t i = 0; i < large_.size(); ++i) {
-    for (uint32_t other = 0; other < boxes.size(); ++other) {
-      // Two large ones meet once, at the earlier.
-      const bool met =
-          std::binary_search(large_.begin(), large_.begin() + static_cast<ptrdiff_t>(i) + 1, other);
-      if (!met && boxes[large_[i]].meets(boxes[other])) offer(large_[i], other);
+  template <class Visit>
+  void within(size_t level, uint32_t node, const Visit& visit) const {
+    if (level == 0) {
+      const auto end = std::min<uint32_t>((node + 1) * kGroup, boxes_.size());
+      for (uint32_t i = node * kGroup; i < end; ++i)
+        for (uint32_t j = i + 1; j < end; ++j)
+          if (boxes_[i].meets(boxes_[j])) visit(i, j);
+      return;
     }
+    within(level - 1, 2 * node, visit);
+    if (2 * node + 1 >= levels_[level - 1].size()) return;
+    within(level - 1, 2 * node + 1, visit);
+    across(level - 1, 2 * node, 2 * node + 1, visit);
   }
-}
+  template <class Visit>
+  void across(size_t level, uint32_t a, uint32_t b, const Visit& visit) const {
+    const std::vector<FlatBox>& nodes = levels_[level];
+    if (!nodes[a].meets(nodes[b])) return;
+    if (level == 0) {
+      const auto end_b = std::min<uint32_t>((b + 1) * kGroup, boxes_.size());
+      for (uint32_t i = a * kGroup; i < (a + 1) * kGroup; ++i) {
+        if (!boxes_[i].meets(nodes[b])) continue;
+        for (uint32_t j = b * kGroup; j < end_b; ++j)
+          if (boxes_[i].meets(boxes_[j])) visit(i, j);
+      }
+      return;
+    }
+    const bool odd = 2 * b + 1 >= levels_[level - 1].size();
+    for (const uint32_t x : {2 * a, 2 * a + 1})
+      for (const uint32_t y : {2 * b, 2 * b + 1})
+        if (y == 2 * b || !odd) across(level - 1, x, y, visit);
+  }
+  template <class Visit>
+  void meeting(size_t level, uint32_t node, const FlatBox& box, const Visit& visit) const {
+    if (!levels_[level][node].meets(box)) return;
+    if (level == 0) {
+      const auto end = std::min<uint32_t>((node + 1) * kGroup, boxes_.size());
+      for (uint32_t i = node * kGroup; i < end; ++i)
+        if (boxes_[i].meets(box)) visit(i);
+      return;
+    }
+    for (const uint32_t child : {2 * node, 2 * node + 1})
+      if (child < levels_[level - 1].size()) meeting(level - 1, child, box, visit);
+  }
+
+  std::span<const FlatBox> boxes_;
+  std::vector<std::vector<FlatBox>> levels_;  // of groups, of pairs of these, ... of all
+};
 
 }  // namespace liana

@@ -46,6 +46,7 @@ void PlantContacts::look_at(std::span<const Plant* const> plants) {
     const double dt = plant.scheme.dt;
     for (uint32_t i = 0; i < plant.particles.size(); ++i) {
       const Particle& particle = plant.particles[i];
+      if (plant.branches[particle.branch.index()].kind == DomainKind::Leaf) continue;
       const Motion& m = plant.motion[i];
       const Vec3 axis = m.orientation * Vec3(0, particle.half_length, 0);
       const auto radius = static_cast<float>(std::max(particle.half_width, particle.half_thickness));
@@ -54,23 +55,24 @@ void PlantContacts::look_at(std::span<const Plant* const> plants) {
       const Eigen::Vector3f centre = m.position.cast<float>();
       const Eigen::Vector3f half =
           axis.cwiseAbs().cast<float>().array() + (radius + static_cast<float>(way) + kRounding);
-      const bool blade = plant.branches[particle.branch.index()].kind == DomainKind::Leaf;
-      bodies_.push_back({m.position, axis, radius, k, i, blade});
+      bodies_.push_back({m.position, axis, radius, k, i});
       boxes_.push_back({centre - half, centre + half});
     }
   }
 }
 
-bool PlantContacts::list_holds(std::span<const Plant* const> plants) const {
-  if (sizes_.size() != plants.size()) return false;
-  for (size_t k = 0; k < plants.size(); ++k)
-    if (sizes_[k] != plants[k]->particles.size()) return false;
-  for (size_t i = 0; i < boxes_.size(); ++i) {
-    const FlatBox &now = boxes_[i], &listed = listed_[i];
-    if ((now.low.array() < listed.low.array()).any() || (now.high.array() > listed.high.array()).any())
-      return false;
+// Every body when some came or went; else those that left the box that the list looks at.
+void PlantContacts::find_moved(std::span<const Plant* const> plants) {
+  bool same = sizes_.size() == plants.size() && listed_.size() == boxes_.size();
+  for (size_t k = 0; same && k < plants.size(); ++k) same = sizes_[k] == plants[k]->particles.size();
+  moved_.assign(boxes_.size(), !same);
+  moved_count_ = same ? 0 : boxes_.size();
+  for (size_t i = 0; same && i < boxes_.size(); ++i) {
+    moved_[i] = (boxes_[i].low.array() < listed_[i].low.array()).any() ||
+                (boxes_[i].high.array() > listed_[i].high.array()).any();
+    moved_count_ += moved_[i];
   }
-  return true;
+  if (moved_count_ > boxes_.size() / 3) moved_.assign(boxes_.size(), 1), moved_count_ = boxes_.size();
 }
 
 void PlantContacts::follow(uint32_t plant, const TopologyChange& change) {
@@ -98,60 +100,69 @@ void PlantContacts::forget(uint32_t plant) {
 }
 
 // Neighbours in the tree share a joint or nearly so.
-bool PlantContacts::near_kin(std::span<const Plant* const> plants, uint32_t a, uint32_t b) const {
-  if (bodies_[a].plant != bodies_[b].plant) return false;
-  const std::vector<Particle>& all = plants[bodies_[a].plant]->particles;
-  const auto above = [&](uint32_t i) {
-    return i == kNone || !all[i].parent.valid() ? kNone : static_cast<uint32_t>(all[i].parent.index());
-  };
-  const uint32_t i = bodies_[a].particle, j = bodies_[b].particle;
-  const uint32_t pi = above(i), pj = above(j), gi = above(pi), gj = above(pj);
-  return pi == j || pj == i || gi == j || gj == i || (pi == pj && pi != kNone) || (pi == gj && pi != kNone) ||
-         (gi == pj && gi != kNone);
+bool PlantContacts::near_kin(uint32_t a, uint32_t b) const {
+  const Body &x = bodies_[a], &y = bodies_[b];
+  if (x.plant != y.plant) return false;
+  const Kin &of_x = kin_[a], &of_y = kin_[b];
+  return of_x.parent == y.particle || of_y.parent == x.particle || of_x.grandparent == y.particle ||
+         of_y.grandparent == x.particle ||
+         (of_x.parent != kNone && (of_x.parent == of_y.parent || of_x.parent == of_y.grandparent)) ||
+         (of_x.grandparent != kNone && of_x.grandparent == of_y.parent);
 }
 
-void PlantContacts::rebuild(std::span<const Plant* const> plants) {
-  listed_ = boxes_;
-  size_t body = 0;
-  for (const Plant* plant : plants)
-    for (size_t i = 0; i < plant->particles.size(); ++i, ++body) {
-      // The box holds one step's way already; the list is to last for several.
-      const auto more =
-          static_cast<float>(options_.margin + 3 * plant->scheme.dt * plant->motion[i].velocity.norm());
-      listed_[body].low.array() -= more;
-      listed_[body].high.array() += more;
-    }
-  pairs_.clear();
-  pairs_finder_.find(
-      listed_,
-      [&](uint32_t a, uint32_t b) {
-        return !bodies_[a].blade && !bodies_[b].blade && !near_kin(plants, a, b);
-      },
-      pairs_);
+void PlantContacts::list_moved(std::span<const Plant* const> plants) {
+  listed_.resize(bodies_.size());
+  kin_.resize(bodies_.size());
+  for (size_t i = 0; i < bodies_.size(); ++i) {
+    if (!moved_[i]) continue;
+    const Plant& plant = *plants[bodies_[i].plant];
+    const auto above = [&](uint32_t p) {
+      const ParticleId parent = p == kNone ? ParticleId() : plant.particles[p].parent;
+      return parent.valid() ? static_cast<uint32_t>(parent.index()) : kNone;
+    };
+    const uint32_t parent = above(bodies_[i].particle);
+    kin_[i] = {parent, above(parent)};
+    // The box holds one step's way already; the list is to last for several.
+    const double speed = plant.motion[bodies_[i].particle].velocity.norm();
+    const auto more = static_cast<float>(options_.margin + options_.list_steps * plant.scheme.dt * speed);
+    listed_[i] = {boxes_[i].low.array() - more, boxes_[i].high.array() + more};
+  }
+  tree_.fit(listed_);
 
-  std::sort(memory_.begin(), memory_.end(),
-            [](const Memory& a, const Memory& b) { return a.key() < b.key(); });
-  remembered_.assign(bodies_.size(), 0);
-  std::vector<size_t> first(plants.size(), 0);
-  for (size_t k = 1; k < plants.size(); ++k) first[k] = first[k - 1] + plants[k - 1]->particles.size();
-  for (const Memory& m : memory_)
-    for (const uint64_t name : {m.a, m.b}) {
-      const size_t plant = name >> 32, particle = name & kNone;
-      if (plant < plants.size() && particle < plants[plant]->particles.size())
-        remembered_[first[plant] + particle] = 1;
-    }
-  candidates_.clear();
-  for (const auto& [a, b] : pairs_) {
+  // What pairs of moved ones remember.
+  forgotten_.clear();
+  const bool all = moved_count_ == bodies_.size();
+  if (all) {
+    for (uint32_t m = 0; m < memory_.size(); ++m) forgotten_.push_back({memory_[m].key(), m});
+    candidates_.clear();
+  } else {
+    std::erase_if(candidates_, [&](const Candidate& c) {
+      if (!moved_[c.a] && !moved_[c.b]) return false;
+      if (c.memory != kNone) forgotten_.push_back({memory_[c.memory].key(), c.memory});
+      return true;
+    });
+  }
+  std::sort(forgotten_.begin(), forgotten_.end());
+  const auto offer = [&](uint32_t a, uint32_t b) {
+    if (near_kin(a, b)) return;
     Candidate candidate{a, b, kNone};
-    if (remembered_[a] && remembered_[b]) {
-      const std::pair key(name(a), name(b));
-      const auto found = std::lower_bound(memory_.begin(), memory_.end(), key,
-                                          [](const Memory& m, const auto& k) { return m.key() < k; });
-      if (found != memory_.end() && found->key() == key)
-        candidate.memory = static_cast<uint32_t>(found - memory_.begin());
+    if (!forgotten_.empty()) {
+      const std::pair key(bodies_[a].name(), bodies_[b].name());
+      const auto found = std::lower_bound(forgotten_.begin(), forgotten_.end(), std::pair(key, uint32_t{0}));
+      if (found != forgotten_.end() && found->first == key) candidate.memory = found->second;
     }
     candidates_.push_back(candidate);
+  };
+  if (all) {
+    tree_.all(offer);
+    return;
   }
+  for (uint32_t i = 0; i < bodies_.size(); ++i)
+    if (moved_[i])
+      tree_.of(i, [&](uint32_t other) {
+        if (other == i || (moved_[other] && other < i)) return;  // met from the other side
+        offer(std::min(i, other), std::max(i, other));
+      });
 }
 
 PlantContactReport PlantContacts::gather(std::span<const Plant* const> plants,
@@ -159,8 +170,9 @@ PlantContactReport PlantContacts::gather(std::span<const Plant* const> plants,
   require(springs.size() == plants.size(), "every plant has a list of springs");
   PlantContactReport report;
   look_at(plants);
-  report.rebuilt = !list_holds(plants);
-  if (report.rebuilt) rebuild(plants);
+  find_moved(plants);
+  if (moved_count_ > 0) list_moved(plants);
+  report.listed = moved_count_;
   next_memory_.clear();
   for (Candidate& candidate : candidates_) {
     if (!boxes_[candidate.a].meets(boxes_[candidate.b])) {
@@ -192,7 +204,7 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
   const Vec3 velocity = velocity_a - velocity_b, acceleration = ma.acceleration - mb.acceleration;
   if (distance - a.radius - b.radius > dt * (velocity.norm() + dt / 2 * acceleration.norm()) + kApart) return;
 
-  Memory memory{name(candidate.a), name(candidate.b), Vec3::Zero(), false, {}};
+  Memory memory{a.name(), b.name(), Vec3::Zero(), false, {}};
   if (old != kNone) memory = memory_[old];
   Vec3 n = distance > 1e-9 ? Vec3(between / distance)
            : old != kNone  ? memory.normal

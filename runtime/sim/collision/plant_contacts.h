@@ -23,14 +23,15 @@ struct PlantContactOptions {
   double stiffness_ratio = 10;  ///< normal stiffness of a light touch over reduced mass/Δt²
   double deepest = 5;           ///< times 0.15 of the thickness: what is deeper, or an impact, is no stiffer
   double push_out_speed = 0.5;  ///< m/s, at which what is deep inside is moved out
-  double margin = 6e-3;         ///< m that lists of neighbours look ahead at least
+  double margin = 6e-3;         ///< m that lists of neighbours allow for turns
+  double list_steps = 2;        ///< steps at the present speed that they last for
 };
 
 struct PlantContactReport {
   size_t contacts = 0;     ///< pairs that got springs
   size_t exempt = 0;       ///< pairs that overlapped when first seen and have not come apart since
   size_t candidates = 0;   ///< pairs in the list
-  bool rebuilt = false;    ///< whether the list was made anew
+  size_t listed = 0;       ///< particles whose neighbours were looked up anew
   double max_overlap = 0;  ///< m, of the state looked at, without exempt pairs
 };
 
@@ -53,7 +54,10 @@ class PlantContacts {
     Vec3 centre, axis;  // m; axis: half the length
     float radius;       // m, the largest
     uint32_t plant, particle;
-    bool blade;
+    uint64_t name() const { return uint64_t{plant} << 32 | particle; }
+  };
+  struct Kin {
+    uint32_t parent, grandparent;  // particles of the same plant, or kNone
   };
   struct Memory {   // of a pair that touches
     uint64_t a, b;  // plant << 32 | particle
@@ -69,23 +73,24 @@ class PlantContacts {
   static constexpr uint32_t kNone = ~0u;
 
   void look_at(std::span<const Plant* const> plants);
-  bool list_holds(std::span<const Plant* const> plants) const;
-  void rebuild(std::span<const Plant* const> plants);
-  bool near_kin(std::span<const Plant* const> plants, uint32_t a, uint32_t b) const;
-  uint64_t name(uint32_t body) const { return uint64_t{bodies_[body].plant} << 32 | bodies_[body].particle; }
+  void find_moved(std::span<const Plant* const> plants);
+  void list_moved(std::span<const Plant* const> plants);
+  bool near_kin(uint32_t a, uint32_t b) const;
   void touch(Candidate& candidate, std::span<const Plant* const> plants,
              std::span<std::vector<WorldSpring>* const> springs, PlantContactReport& report);
 
   PlantContactOptions options_;
-  BoxPairs pairs_finder_;
-  std::vector<BoxPairs::Pair> pairs_;
-  std::vector<size_t> sizes_;  // of the plants that the list was made for
-  std::vector<Body> bodies_;
+  BoxPairs tree_;                // over listed_
+  std::vector<size_t> sizes_;    // of the plants that the list was made for
+  std::vector<Body> bodies_;     // of stems, by plant and particle
+  std::vector<Kin> kin_;         // of bodies, for the list
   std::vector<FlatBox> boxes_;   // of now, with the way of one step
   std::vector<FlatBox> listed_;  // what the list looks at: boxes with a margin
   std::vector<Candidate> candidates_;
-  std::vector<Memory> memory_, next_memory_;  // sorted by key
-  std::vector<uint8_t> remembered_;           // per body: it is in memory_
+  std::vector<Memory> memory_, next_memory_;
+  std::vector<uint8_t> moved_;  // per body
+  size_t moved_count_ = 0;
+  std::vector<std::pair<std::pair<uint64_t, uint64_t>, uint32_t>> forgotten_;  // key, into memory_; sorted
 };
 
 }  // namespace liana
