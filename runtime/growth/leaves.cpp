@@ -10,6 +10,7 @@
 namespace liana {
 namespace {
 
+constexpr double kClear = 2e-3;      // m, that a new leaf keeps from solids
 constexpr double kYoungest = 0.2;    // size of a leaf when it unfolds, of its full size
 constexpr double kClearance = 2e-3;  // m that a growing blade keeps from solids
 
@@ -21,6 +22,17 @@ Quat leaf_frame(const Vec3& midrib, const Vec3& face) {
   axes.col(0) = across.norm() > 1e-6 ? across.normalized() : axes.col(1).unitOrthogonal();
   axes.col(2) = axes.col(0).cross(axes.col(1));
   return Quat(axes);
+}
+
+/// A direction (unit) for what reaches out from `base` by `length` (m), turned from where it would be in a
+/// solid. Nearer places turn it first: further in, the nearest way out may be the one on the other side.
+Vec3 out_of_solids(const Vec3& base, Vec3 direction, double length, const Surroundings& around) {
+  constexpr int kPlaces = 4;
+  for (int i = 1; i <= kPlaces; ++i) {
+    const Vec3 way = length * i / kPlaces * direction;
+    direction = (way + way_out(base + way, kClear, around)).normalized();
+  }
+  return direction;
 }
 
 }  // namespace
@@ -42,6 +54,7 @@ BranchId Leaves::sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3&
   if (height < p.petiole + p.length) midrib.y() = std::max(midrib.y(), 0.3 * midrib.norm());
 
   const double size = 1 + p.variation * random.uniform(-1, 1);
+  midrib = out_of_solids(head_of(plant, node), midrib.normalized(), p.petiole + size * p.length, around);
   Leaf leaf{BranchId(plant.branches.size()), size * p.length, size * p.width, outward};
   Branch branch;
   branch.parent = shoot.branch;

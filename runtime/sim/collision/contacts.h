@@ -18,7 +18,7 @@ struct ContactOptions {
   ContactFeel ground;             ///< obstacles have their own
   double stiffness_ratio = 1000;  ///< normal stiffness over m/Δt²
   double least_stiffness = 5e3;   ///< N/m
-  double push_out_speed = 1.0;    ///< m/s, at which what is deep inside is moved out
+  double push_out_speed = 0.3;    ///< m/s, at which what is deep inside is moved out
 };
 
 struct ContactReport {

@@ -70,15 +70,15 @@ void Probes::look(const Plant& plant, const CollisionScene& scene, double dt, si
                                  (half.norm() + (solid.low() + half - solid.pose().centre).norm()));
     if ((solid.low().array() - way <= high.array()).all() &&
         (low.array() <= solid.high().array() + way).all())
-      near_.push_back(s);
+      near_.emplace_back(s + 1, &solid);
   }
-  const double ground = scene.ground_height.value_or(-std::numeric_limits<double>::infinity());
-  const bool near_ground = low.y() <= ground;
+  ground_ = scene.ground_height.value_or(-std::numeric_limits<double>::infinity());
+  const bool near_ground = low.y() <= ground_;
   if (near_.empty() && !near_ground) return;
 
   for (size_t i = first; i < last; ++i) {
-    if (near_ground) look_at(plant, i, dt, nullptr, 0, ground);
-    for (const uint32_t s : near_) look_at(plant, i, dt, scene.solids[s], s + 1, ground);
+    if (near_ground) look_at(plant, i, dt, nullptr, 0);
+    for (const auto& [number, solid] : near_) look_at(plant, i, dt, solid, number);
   }
 }
 
@@ -198,15 +198,52 @@ class Probes::View {
   Vec3 axis_;
 };
 
-void Probes::look_at(const Plant& plant, size_t i, double dt, const SdfObstacle* solid, uint64_t number,
-                     double ground) {
+bool Probes::inside(const Vec3& x, std::optional<const SdfObstacle*> without) const {
+  return (x.y() < ground_ && without != nullptr) ||
+         std::any_of(near_.begin(), near_.end(),
+                     [&](const auto& s) { return without != s.second && s.second->distance(x) < 0; });
+}
+
+// Where solids touch, the face that is nearest from within may lie against another solid: that is no way out.
+// The way that it came in is: the plant itself leads there. False when another solid has to see to it.
+bool Probes::lead_out(const Plant& plant, Gap& gap) const {
+  const Particle& particle = plant.particles[gap.particle];
+  const Motion& motion = plant.motion[gap.particle];
+  const bool blade = plant.branches[particle.branch.index()].kind == DomainKind::Leaf;
+  Vec3 within = motion.position + motion.orientation * gap.point;
+  if (!blade) within -= particle.half_width * gap.normal;
+  const Vec3 start = within;
+  if (!inside(start - (gap.gap - kTouch) * gap.normal, gap.solid)) return true;
+  constexpr int kFarthest = 8;
+  Vec3 outside = start;
+  ParticleId at(gap.particle);
+  for (int i = 0; i < kFarthest && at.valid() && inside(outside); ++i) {
+    const Particle& on_the_way = plant.particles[at.index()];
+    outside = plant.motion[at.index()].position +
+              plant.motion[at.index()].orientation * Vec3(0, -on_the_way.half_length, 0);
+    at = on_the_way.parent;
+  }
+  if (inside(outside)) return true;  // as good as any
+  for (int i = 0; i < 16; ++i) {
+    const Vec3 middle = (within + outside) / 2;
+    (inside(middle) ? within : outside) = middle;
+  }
+  const Nearest entry =
+      gap.solid ? nearest(*gap.solid, within, 2 * kTouch) : Nearest{within.y() - ground_, Vec3::UnitY()};
+  if (std::abs(entry.distance) > 2 * kTouch) return false;
+  gap.normal = entry.normal;
+  gap.gap = std::min(0.0, (start - within).dot(entry.normal));
+  return true;
+}
+
+void Probes::look_at(const Plant& plant, size_t i, double dt, const SdfObstacle* solid, uint64_t number) {
   const Particle& particle = plant.particles[i];
   double travel = travel_of(particle, plant.motion[i], dt);
   if (solid && solid->moves())
     travel += dt * (solid->velocity_at(plant.motion[i].position).norm() +
                     solid->pose().angular_velocity.norm() * particle.half_length);
   const double reach = std::max(particle.half_width, particle.half_thickness) + travel;
-  const View view(plant, i, dt, solid, ground);
+  const View view(plant, i, dt, solid, ground_);
   const View::Point middle = view.at(0, reach + particle.half_length);
   if (!std::isfinite(middle.found.distance)) return;
   const auto note = [&](const View::Point& point, uint64_t probe) {
@@ -214,7 +251,8 @@ void Probes::look_at(const Plant& plant, size_t i, double dt, const SdfObstacle*
     if (!gap) return;
     gap->particle = i;
     gap->key = (uint64_t(i) << 16 | number) << 2 | probe;
-    gaps_.push_back(*gap);
+    const bool alone = near_.size() + (ground_ > -std::numeric_limits<double>::infinity()) < 2;
+    if (gap->gap >= 0 || alone || lead_out(plant, *gap)) gaps_.push_back(*gap);
   };
   const View::Point head = view.at(1, reach + 2 * particle.half_length);
   note(middle, 0);

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "runtime/sim/collision/sdf_obstacle.h"
@@ -37,10 +38,13 @@ class Probes {
  private:
   class View;
   void look(const Plant& plant, const CollisionScene& scene, double dt, size_t first, size_t last);
-  void look_at(const Plant& plant, size_t particle, double dt, const SdfObstacle* solid, uint64_t number,
-               double ground);
+  /// Whether a point is in the ground or in one of near_.
+  bool inside(const Vec3& x, std::optional<const SdfObstacle*> without = {}) const;
+  bool lead_out(const Plant& plant, Gap& gap) const;
+  void look_at(const Plant& plant, size_t particle, double dt, const SdfObstacle* solid, uint64_t number);
 
-  std::vector<uint32_t> near_;  // solids near the particles at hand
+  std::vector<std::pair<uint64_t, const SdfObstacle*>> near_;  // solids near the particles at hand, numbered
+  double ground_ = 0;                                          // m; or minus infinity
   std::vector<Gap> gaps_;
 };
 
