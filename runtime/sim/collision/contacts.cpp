@@ -74,7 +74,7 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, const Gap
                mass * std::max(0.0, -approach - std::max(0.0, found.gap) / dt) / dt);  // N
   const FrictionAnswer friction =
       friction_answer(grip, slip, across * velocity, across * motion.acceleration, at_end * hold_stiffness,
-                      feel.friction * pressing, mass, dt);
+                      found.slides ? 0 : feel.friction * pressing, mass, dt);
 
   // To the surface, along n.
   const double way = std::min(-to_surface, options_.push_out_speed * dt + dt * std::max(0.0, surface.dot(n)));
@@ -91,7 +91,9 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, const Gap
     spring.damping = k * dt * normal;
     spring.target_velocity = (own.dot(n) - at_end * gain * approach) * n;
   }
-  if (friction.dashpot > 0) {
+  if (found.slides) {
+    grip.holds = false;
+  } else if (friction.dashpot > 0) {
     spring.damping += friction.dashpot * across;
     spring.target_velocity += across * surface;
   } else if (grip.holds) {

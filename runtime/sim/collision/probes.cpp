@@ -184,7 +184,7 @@ class Probes::View {
     // A round stem is held at its axis: held at its skin, a point that turns with it, it would be rolled over
     // by its own weight.
     const Vec3 on_axis(0, point.along * particle_.half_length, 0);
-    return Gap{0, 0, solid_, blade_ ? Vec3(on_axis + arm) : on_axis, gap, normal};
+    return Gap{0, 0, solid_, blade_ ? Vec3(on_axis + arm) : on_axis, gap, normal, blade_ && point.along != 0};
   }
 
  private:

@@ -25,6 +25,7 @@ struct Gap {
   Vec3 point;                ///< m, particle's frame: what a spring holds
   double gap;                ///< m, negative inside; now, before the solid moves
   Vec3 normal;               ///< unit, away from the solid
+  bool slides = false;       ///< without friction: a blade's tip or midrib, which gives way sideways
 };
 
 /// The gaps of every probe of particles from `first` on that can get into something within dt, as they move
