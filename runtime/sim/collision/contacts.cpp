@@ -57,7 +57,8 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, const Gap
   const Vec3 velocity = own - surface;
   const double approach = velocity.dot(n);
   const double hold_stiffness = options_.stiffness_ratio * mass / (dt * dt);  // N/m, across
-  const double k = std::max(hold_stiffness, options_.least_stiffness);
+  const bool blade = plant.branches[plant.particles[found.particle].branch.index()].kind == DomainKind::Leaf;
+  const double k = blade ? hold_stiffness : std::max(hold_stiffness, options_.least_stiffness);
   const double coming = std::max(0.0, -approach) * dt / kImpact;
   const double settling = dt * std::clamp(1.25 - coming / 4, 0.25, 1.0);  // τ
   const Mat3 normal = n * n.transpose(), across = Mat3::Identity() - normal;
