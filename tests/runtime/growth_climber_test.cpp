@@ -237,10 +237,11 @@ TEST_F(AnchorsOnAWall, HardenWithAgeAndWidthAndDoNotPull) {
 
 TEST_F(AnchorsOnAWall, LetGoBeyondTheirDistance) {
   anchors.attach(plant, id, around);
-  plant.motion[0].position.z() += 0.019;
+  const double distance = AnchorParameters().release_distance;
+  plant.motion[0].position.z() += 0.95 * distance;
   anchors.update(plant, 0.1);
   EXPECT_EQ(anchors.count(), 1u);
-  plant.motion[0].position.z() += 0.002;
+  plant.motion[0].position.z() += 0.1 * distance;
   anchors.update(plant, 0.1);
   EXPECT_EQ(anchors.count(), 0u);
   EXPECT_EQ(anchors.released(), 1u);

@@ -60,7 +60,9 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, const Gap
   const bool blade = plant.branches[plant.particles[found.particle].branch.index()].kind == DomainKind::Leaf;
   const double k = blade ? hold_stiffness : std::max(hold_stiffness, options_.least_stiffness);
   const double coming = std::max(0.0, -approach) * dt / kImpact;
-  const double settling = dt * std::clamp(1.25 - coming / 4, 0.25, 1.0);  // τ
+  // What is soft settles slowly, or a leaf that props up a fallen twig would rock it for ever.
+  const double at_rest = blade ? 1.6 : 1.0;
+  const double settling = dt * std::clamp(at_rest + 0.25 - coming / 4, 0.25, at_rest);  // τ
   const Mat3 normal = n * n.transpose(), across = Mat3::Identity() - normal;
 
   // What it holds on to now, as the surface was before it moved.
