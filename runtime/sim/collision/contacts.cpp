@@ -60,9 +60,7 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, const Gap
   const bool blade = plant.branches[plant.particles[found.particle].branch.index()].kind == DomainKind::Leaf;
   const double k = blade ? hold_stiffness : std::max(hold_stiffness, options_.least_stiffness);
   const double coming = std::max(0.0, -approach) * dt / kImpact;
-  // What is soft settles slowly, or a leaf that props up a fallen twig would rock it for ever.
-  const double at_rest = blade ? 1.6 : 1.0;
-  const double settling = dt * std::clamp(at_rest + 0.25 - coming / 4, 0.25, at_rest);  // τ
+  const double settling = dt * std::clamp(1.25 - coming / 4, 0.25, 1.0);  // τ
   const Mat3 normal = n * n.transpose(), across = Mat3::Identity() - normal;
 
   // What it holds on to now, as the surface was before it moved.
@@ -126,13 +124,15 @@ ContactReport Contacts::gather(const Plant& plant, const CollisionScene& scene,
     const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(arm) - surface;
     const double coming =
         dt * velocity.dot(found.normal) + dt * dt / 2 * motion.acceleration.dot(found.normal);
-    if (found.gap + std::min(0.0, coming) >= 0) continue;
+    while (last != before_.end() && last->key < found.key) ++last;
+    const bool touched = last != before_.end() && last->key == found.key;
+    // A contact that settles ends a step about τ|v| above the surface, on its way down: let go then, it would
+    // fall and come again for ever.
+    if (found.gap + (touched ? 3 : 1) * std::min(0.0, coming) >= 0) continue;
     // What has bounced leaves by itself.
     const double elasticity = (found.solid ? found.solid->feel : options_.ground).elasticity;
     if (elasticity > 0 && velocity.dot(found.normal) > kImpactSpeed) continue;
-    while (last != before_.end() && last->key < found.key) ++last;
-    Made made{found.key, {}};
-    if (last != before_.end() && last->key == found.key) made.grip = last->grip;
+    Made made{found.key, touched ? last->grip : Grip()};
     springs.push_back(spring(plant, motion, found, found.gap - dt * surface.dot(found.normal), made.grip));
     made_.push_back(made);
     ++report.contacts;
