@@ -12,8 +12,8 @@
 namespace liana {
 
 /// Where a particle is and how it moves: the state that a hash, a snapshot or a recording covers. World
-/// frame.
-struct Motion {
+/// frame. Aligned so that each is read in three lines of the cache.
+struct alignas(32) Motion {
   Vec3 position = Vec3::Zero();  ///< of the centre of mass, m
   Quat orientation = Quat::Identity();
   Vec3 velocity = Vec3::Zero();              ///< m/s
@@ -36,7 +36,8 @@ struct Joint {
   Vec3 rest_moment = Vec3::Zero();      ///< the same about the joint, N·m
 };
 
-struct Particle {
+/// Four lines of the cache.
+struct alignas(64) Particle {
   ParticleId parent;
   BranchId branch;
   double half_length = 0;        ///< m, along local y; > 0
