@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "materials/bake/bake.h"
+#include "runtime/sim/large_pages.h"
 
 namespace liana {
 
@@ -50,6 +51,20 @@ struct alignas(64) Particle {
   Joint joint;
 };
 
+}  // namespace liana
+
+// Vectors of these, which make up most of a large plant, lie in large pages.
+template <>
+struct std::allocator<liana::Motion> : liana::LargePages<liana::Motion> {
+  using LargePages::LargePages;
+};
+template <>
+struct std::allocator<liana::Particle> : liana::LargePages<liana::Particle> {
+  using LargePages::LargePages;
+};
+
+namespace liana {
+
 /// A spring from a point of a particle to a point of the world: anchor, grab, contact. Only ever adds to the
 /// particle's own 6×6 block, so the tree stays solvable in linear time.
 struct WorldSpring {
@@ -77,7 +92,8 @@ struct Branch {
   double strength = 0;         ///< Pa that its joints bear (see breaking.h); 0: it never breaks
 };
 
-/// Direct: PlantStepper's own; ShapeMatching: [Haedrich17]'s scheme, which no material drives (shape_matching.h).
+/// Direct: PlantStepper's own; ShapeMatching: [Haedrich17]'s scheme, which no material drives
+/// (shape_matching.h).
 enum class Solver { Direct, ShapeMatching };
 
 /// How a plant is integrated. Its joints are calibrated for exactly these numbers: calibrate_plant() chooses

@@ -7,7 +7,7 @@
 #include "runtime/sim/free_flight.h"
 #include "runtime/sim/generalized_alpha.h"
 #include "runtime/sim/joints.h"
-#include "runtime/sim/lanes/large_numbers.h"
+#include "runtime/sim/large_pages.h"
 #include "runtime/sim/reseat.h"
 
 namespace liana {
@@ -45,13 +45,13 @@ const double* numbers(const void* structures) {
 // What a substep computes with and then forgets. A thread keeps its own: while plants are stepped one after
 // the other, they stay in the cache. Threads that share a plant use one each of those of the calling thread.
 struct Workspace {
-  std::vector<double> pose, block;  // see step_view.h
-  lanes::LargeNumbers record;       // of the first one only
+  std::vector<double> pose, block;                 // see step_view.h
+  std::vector<double, LargePages<double>> record;  // of the first one only
 
+  static void grow(auto& numbers, size_t size) {
+    if (numbers.size() < size) numbers.resize(size);
+  }
   void prepare(const EliminationOrder& order, const Vec3& world_position) {
-    const auto grow = [](std::vector<double>& numbers, size_t size) {
-      if (numbers.size() < size) numbers.resize(size);
-    };
     grow(pose, size_t{lanes::kPoseStride} * order.pose_slots());
     grow(block, size_t{lanes::kBlockStride} * order.block_slots());
     // The world: unturned, at rest. What it is handed is not looked at.
@@ -215,7 +215,7 @@ PlantStepper::Outcome PlantStepper::substep(const Plant& plant, const Substep& s
   const std::span<Workspace> spaces(workspaces.data(), shares);  // of this thread, whoever uses them
   for (Workspace& space : spaces) space.prepare(order_, step.world);
   Workspace& main = spaces[0];
-  main.record.grow(size_t{4 * lanes::kRecordLanes} * order_.packs().size());
+  Workspace::grow(main.record, size_t{4 * lanes::kRecordLanes} * order_.packs().size());
   const lanes::StepView view = step.view(plant, from, to, order_, main);
   const auto eliminate = [&](lanes::StepView view, const EliminationOrder::Part& part) {
     view.ahead = part.last - part.first;  // to the next part
