@@ -18,7 +18,8 @@ namespace liana {
 class EliminationOrder {
  public:
   struct Part {
-    uint32_t first, last;  ///< packs [first, last)
+    uint32_t first, last;     ///< packs [first, last)
+    uint32_t first_handover;  ///< the part's end where the next one's begin
   };
   /// What a part's subtree hands to the top: the block at slot `from` is to be added to the one at slot `to`.
   struct Handover {
@@ -34,6 +35,13 @@ class EliminationOrder {
   std::span<const Part> parts() const { return parts_; }
   Part top() const { return top_; }
   std::span<const Handover> handovers() const { return handovers_; }
+  /// Those of the parts from the begin-th to before the end-th.
+  std::span<const Handover> handovers_of(size_t begin, size_t end) const {
+    const auto at = [&](size_t part) {
+      return part < parts_.size() ? parts_[part].first_handover : handovers_.size();
+    };
+    return handovers().subspan(at(begin), at(end) - at(begin));
+  }
 
   size_t particles() const { return parent_.size(); }
   uint32_t part_of(ParticleId particle) const {
@@ -44,9 +52,8 @@ class EliminationOrder {
   uint32_t pose_slots() const { return pose_slots_; }
   uint32_t block_slots() const { return block_slots_; }  ///< those for poses, then one per handover
 
-  /// Whether the tree still is the one that the packs of a part were made for. Also calls its data into the
-  /// cache.
-  bool still_holds(std::span<const Particle> particles, std::span<const Motion> motion, Part part) const;
+  /// Whether the tree still is the one that the packs of a part were made for.
+  bool still_holds(std::span<const Particle> particles, Part part) const;
 
  private:
   void divide();

@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "materials/bake/bake.h"
+#include "runtime/sim/large_pages.h"
 
 namespace liana {
 
 /// Where a particle is and how it moves: the state that a hash, a snapshot or a recording covers. World
-/// frame.
-struct Motion {
+/// frame. Aligned so that each is read in three lines of the cache.
+struct alignas(32) Motion {
   Vec3 position = Vec3::Zero();  ///< of the centre of mass, m
   Quat orientation = Quat::Identity();
   Vec3 velocity = Vec3::Zero();              ///< m/s
@@ -36,7 +37,8 @@ struct Joint {
   Vec3 rest_moment = Vec3::Zero();      ///< the same about the joint, N·m
 };
 
-struct Particle {
+/// Four lines of the cache.
+struct alignas(64) Particle {
   ParticleId parent;
   BranchId branch;
   double half_length = 0;        ///< m, along local y; > 0
@@ -48,6 +50,20 @@ struct Particle {
   double stiffness_damping = 0;  ///< d_K, s, of its joint
   Joint joint;
 };
+
+}  // namespace liana
+
+// Vectors of these, which make up most of a large plant, lie in large pages.
+template <>
+struct std::allocator<liana::Motion> : liana::LargePages<liana::Motion> {
+  using LargePages::LargePages;
+};
+template <>
+struct std::allocator<liana::Particle> : liana::LargePages<liana::Particle> {
+  using LargePages::LargePages;
+};
+
+namespace liana {
 
 /// A spring from a point of a particle to a point of the world: anchor, grab, contact. Only ever adds to the
 /// particle's own 6×6 block, so the tree stays solvable in linear time.
@@ -76,7 +92,8 @@ struct Branch {
   double strength = 0;         ///< Pa that its joints bear (see breaking.h); 0: it never breaks
 };
 
-/// Direct: PlantStepper's own; ShapeMatching: [Haedrich17]'s scheme, which no material drives (shape_matching.h).
+/// Direct: PlantStepper's own; ShapeMatching: [Haedrich17]'s scheme, which no material drives
+/// (shape_matching.h).
 enum class Solver { Direct, ShapeMatching };
 
 /// How a plant is integrated. Its joints are calibrated for exactly these numbers: calibrate_plant() chooses

@@ -1,10 +1,13 @@
 #include "runtime/sim/time_step.h"
 
+#include <array>
 #include <cstddef>
 
+#include "mesher/base/parallel.h"
 #include "runtime/sim/free_flight.h"
 #include "runtime/sim/generalized_alpha.h"
 #include "runtime/sim/joints.h"
+#include "runtime/sim/large_pages.h"
 #include "runtime/sim/reseat.h"
 
 namespace liana {
@@ -39,18 +42,18 @@ const double* numbers(const void* structures) {
   return static_cast<const double*>(structures);
 }
 
-// What a substep computes with and then forgets. One per thread: while plants are stepped one after the
-// other, it stays in the cache.
+// What a substep computes with and then forgets. A thread keeps its own: while plants are stepped one after
+// the other, they stay in the cache. Threads that share a plant use one each of those of the calling thread.
 struct Workspace {
-  std::vector<double> pose, block, record;  // see step_view.h
+  std::vector<double> pose, block;                 // see step_view.h
+  std::vector<double, LargePages<double>> record;  // of the first one only
 
+  static void grow(auto& numbers, size_t size) {
+    if (numbers.size() < size) numbers.resize(size);
+  }
   void prepare(const EliminationOrder& order, const Vec3& world_position) {
-    const auto grow = [](std::vector<double>& numbers, size_t size) {
-      if (numbers.size() < size) numbers.resize(size);
-    };
     grow(pose, size_t{lanes::kPoseStride} * order.pose_slots());
     grow(block, size_t{lanes::kBlockStride} * order.block_slots());
-    grow(record, size_t{4 * lanes::kRecordLanes} * order.packs().size());
     // The world: unturned, at rest. What it is handed is not looked at.
     double* world = &pose[size_t{lanes::kPoseStride} * order.world_slot()];
     std::fill_n(world, lanes::kPoseStride, 0.0);
@@ -60,10 +63,20 @@ struct Workspace {
     for (const EliminationOrder::Handover& h : order.handovers())
       std::fill_n(block_of(h.from), lanes::kBlockStride, 0.0);
   }
-  const double* pose_of(uint32_t slot) const { return &pose[size_t{lanes::kPoseStride} * slot]; }
   double* block_of(uint32_t slot) { return &block[size_t{lanes::kBlockStride} * slot]; }
+  void copy_top_poses(const Workspace& from, const EliminationOrder& order) {
+    std::copy_n(from.pose.data(), size_t{lanes::kPoseStride} * order.world_slot(), pose.data());
+  }
 };
-thread_local Workspace workspace;
+constexpr unsigned kMostShares = 16;
+thread_local std::array<Workspace, kMostShares> workspaces;
+
+// Calls work(share) for each, on as many threads.
+template <class Work>
+void in_shares(unsigned shares, const Work& work) {
+  if (shares == 1) return work(0u);
+  parallel_for(shares, shares, [&work](size_t share, unsigned) { work(static_cast<unsigned>(share)); });
+}
 
 // How far the plant's first particle is from where the world holds it.
 Vec3 off_support(const Plant& plant) {
@@ -113,9 +126,33 @@ struct PlantStepper::Substep {
   std::span<const Wrench> external;
   std::span<const WorldSpring> transient;
   Vec3 gravity;
+  unsigned threads;
   Vec3 world = Vec3::Zero();                                          // how far the world is off its place
   double position_rate = (1 - method.alpha_f) * method.beta * h * h;  // k₁, s²
   double velocity_rate = (1 - method.alpha_f) * method.gamma * h;     // k₂, s
+
+  lanes::StepView view(const Plant& plant, const std::vector<Motion>& from, std::vector<Motion>& to,
+                       const EliminationOrder& order, Workspace& space) const {
+    return {
+        .particle = numbers(plant.particles.data()),
+        .from = numbers(from.data()),
+        .to = static_cast<double*>(static_cast<void*>(to.data())),
+        .pose = space.pose.data(),
+        .block = space.block.data(),
+        .record = space.record.data(),
+        .packs = order.packs().data(),
+        .pack_count = order.packs().size(),
+        .gravity = {gravity.x(), gravity.y(), gravity.z()},
+        .h = h,
+        .alpha_m = method.alpha_m,
+        .alpha_f = method.alpha_f,
+        .before = method.before,
+        .after = method.beta,
+        .gamma = method.gamma,
+        .position_rate = position_rate,
+        .velocity_rate = velocity_rate,
+    };
+  }
 };
 
 StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
@@ -135,8 +172,9 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
   for (int finer = 1;; finer *= 2) {
     const bool last = 2 * finer > options.most_redo_substeps;
     const int parts = plant.scheme.substeps * finer;
-    Substep part{options.dt / parts, method_of(plant.scheme, finer, options.most_redo_substeps), external,
-                 transient, options.gravity};
+    Substep part{options.dt / parts, method_of(plant.scheme, finer, options.most_redo_substeps),
+                 external,           transient,
+                 options.gravity,    options.threads};
     report.gap = 0;
     report.finite = true;
     for (int i = 0; i < parts && report.finite && (last || report.gap <= options.gap_limit); ++i) {
@@ -171,81 +209,75 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
 PlantStepper::Outcome PlantStepper::substep(const Plant& plant, const Substep& step,
                                             const std::vector<Motion>& from, std::vector<Motion>& to,
                                             double& gap) noexcept {
-  workspace.prepare(order_, step.world);
-  const lanes::StepView view{
-      .particle = numbers(plant.particles.data()),
-      .from = numbers(from.data()),
-      .to = static_cast<double*>(static_cast<void*>(to.data())),
-      .pose = workspace.pose.data(),
-      .block = workspace.block.data(),
-      .record = workspace.record.data(),
-      .packs = order_.packs().data(),
-      .gravity = {step.gravity.x(), step.gravity.y(), step.gravity.z()},
-      .h = step.h,
-      .alpha_m = step.method.alpha_m,
-      .alpha_f = step.method.alpha_f,
-      .before = step.method.before,
-      .after = step.method.beta,
-      .gamma = step.method.gamma,
-      .position_rate = step.position_rate,
-      .velocity_rate = step.velocity_rate,
-  };
-  const auto eliminate = [&](const EliminationOrder::Part& part) {
+  const std::span<const EliminationOrder::Part> parts = order_.parts();
+  const EliminationOrder::Part top = order_.top();
+  const unsigned shares = parts.empty() ? 1 : std::clamp(step.threads, 1u, kMostShares);
+  const std::span<Workspace> spaces(workspaces.data(), shares);  // of this thread, whoever uses them
+  for (Workspace& space : spaces) space.prepare(order_, step.world);
+  Workspace& main = spaces[0];
+  Workspace::grow(main.record, size_t{4 * lanes::kRecordLanes} * order_.packs().size());
+  const lanes::StepView view = step.view(plant, from, to, order_, main);
+  const auto eliminate = [&](lanes::StepView view, const EliminationOrder::Part& part) {
+    view.ahead = part.last - part.first;  // to the next part
     for (size_t i = part.first; i < part.last; i += kPacksAtOnce) {
       const size_t end = std::min<size_t>(i + kPacksAtOnce, part.last);
       kernels_->assemble(view, i, end);
       kernels_->factor(view, i, end);
     }
   };
-  const std::span<const EliminationOrder::Part> parts = order_.parts();
-  const EliminationOrder::Part top = order_.top();
+  const auto view_of = [&](unsigned share) {
+    lanes::StepView own = view;
+    own.pose = spaces[share].pose.data();
+    own.block = spaces[share].block.data();
+    if (share > 0) spaces[share].copy_top_poses(main, order_);
+    return own;
+  };
+  const auto first_of = [&](unsigned share) { return static_cast<uint32_t>(parts.size() * share / shares); };
 
   // Leaves to root: poses at the moment of balance, loads, joints, every particle out of the system.
-  if (!order_.still_holds(plant.particles, from, top)) return Outcome::TreeChanged;
   kernels_->predict(view, top.first, top.last);
-  add_loads(step, top, static_cast<uint32_t>(parts.size()));
-  for (uint32_t k = 0; k < parts.size(); ++k) {
-    if (!order_.still_holds(plant.particles, from, parts[k])) return Outcome::TreeChanged;
-    kernels_->predict(view, parts[k].first, parts[k].last);
-    add_loads(step, parts[k], k);
-    eliminate(parts[k]);
-  }
-  for (const EliminationOrder::Handover& h : order_.handovers())
-    for (int i = 0; i < lanes::kBlockStride; ++i)
-      workspace.block_of(h.to)[i] += workspace.block_of(h.from)[i];
-  eliminate(top);
-
-  // Root to leaves: accelerations and the new state.
-  const auto fetch = [&](const EliminationOrder::Part& part) {
-    for (uint32_t p = part.first; p < part.last; ++p) {
-      for (const uint32_t i : order_.packs()[p].self) {
-        for (int at = 0; at < lanes::kMotionStride; at += 8) {
-          __builtin_prefetch(view.from + size_t{lanes::kMotionStride} * i + at);
-          __builtin_prefetch(view.to + size_t{lanes::kMotionStride} * i + at, 1);
-        }
-        __builtin_prefetch(&plant.particles[i].joint);
-      }
+  if (!order_.still_holds(plant.particles, top)) return Outcome::TreeChanged;
+  add_loads(step, top, static_cast<uint32_t>(parts.size()), view);
+  std::array<bool, kMostShares> holds{};
+  in_shares(shares, [&](unsigned share) {
+    const lanes::StepView own = view_of(share);
+    for (uint32_t k = first_of(share); k < first_of(share + 1); ++k) {
+      kernels_->predict(own, parts[k].first, parts[k].last);
+      if (!order_.still_holds(plant.particles, parts[k])) return;
+      add_loads(step, parts[k], k, own);
+      eliminate(own, parts[k]);
     }
-  };
+    holds[share] = true;
+  });
+  for (unsigned share = 0; share < shares; ++share)
+    if (!holds[share]) return Outcome::TreeChanged;
+  for (unsigned share = 0; share < shares; ++share)
+    for (const EliminationOrder::Handover& h : order_.handovers_of(first_of(share), first_of(share + 1)))
+      for (int i = 0; i < lanes::kBlockStride; ++i)
+        main.block_of(h.to)[i] += spaces[share].block_of(h.from)[i];
+  eliminate(view, top);
+
+  // Root to leaves: accelerations and the new state. What was met last is in the cache still.
+  std::array<lanes::AdvanceResult, kMostShares> results{};
   lanes::AdvanceResult result = kernels_->advance(view, top.first, top.last);
-  for (const EliminationOrder::Part& part : parts) {
-    fetch(part);
-    const lanes::AdvanceResult more = kernels_->advance(view, part.first, part.last);
-    result.gap = std::max(result.gap, more.gap);
-    result.finite = result.finite && more.finite;
-  }
+  in_shares(shares, [&](unsigned share) {
+    const lanes::StepView own = view_of(share);
+    for (uint32_t k = first_of(share + 1); k-- > first_of(share);)
+      results[share].add(kernels_->advance(own, parts[k].first, parts[k].last));
+  });
+  for (const lanes::AdvanceResult& more : results) result.add(more);
   gap = std::max(gap, result.gap);
   return result.finite ? Outcome::Finite : Outcome::NotFinite;
 }
 
-void PlantStepper::add_loads(const Substep& step, const EliminationOrder::Part& part,
-                             uint32_t number) noexcept {
+void PlantStepper::add_loads(const Substep& step, const EliminationOrder::Part& part, uint32_t number,
+                             const lanes::StepView& view) noexcept {
   if (!step.external.empty()) {
     for (uint32_t p = part.first; p < part.last; ++p) {
       const lanes::Pack& pack = order_.packs()[p];
       for (uint32_t k = 0; k < pack.count; ++k) {
         if (pack.self[k] >= step.external.size()) continue;
-        Eigen::Map<Vec6> load(workspace.block_of(pack.slot[k]) + lanes::kBlockLoad);
+        Eigen::Map<Vec6> load(view.block + size_t{lanes::kBlockStride} * pack.slot[k] + lanes::kBlockLoad);
         load.head<3>() += step.external[pack.self[k]].force;
         load.tail<3>() += step.external[pack.self[k]].torque;
       }
@@ -253,8 +285,9 @@ void PlantStepper::add_loads(const Substep& step, const EliminationOrder::Part& 
   }
   for (uint32_t i = first_spring_[number]; i < first_spring_[number + 1]; ++i) {
     const uint32_t slot = order_.slot_of(springs_[i]->particle);
-    add_spring(*springs_[i], step.position_rate, step.velocity_rate, workspace.pose_of(slot),
-               workspace.block_of(slot));
+    add_spring(*springs_[i], step.position_rate, step.velocity_rate,
+               view.pose + size_t{lanes::kPoseStride} * slot,
+               view.block + size_t{lanes::kBlockStride} * slot);
   }
 }
 

@@ -25,6 +25,7 @@ struct StepOptions {
   Vec3 gravity = {0, -9.81, 0};  ///< m/s²
   double gap_limit = 0.02;       ///< of the particle's length; above it the step is redone
   int most_redo_substeps = 32;   ///< per substep of the scheme; 1 switches the net off
+  unsigned threads = 1;          ///< that share one plant, if it has some 400 particles or more
 };
 
 struct StepReport {
@@ -38,8 +39,8 @@ struct StepReport {
 };
 
 /// Steps one plant. Owns the working memory: keep one per plant. Steps allocate nothing unless the plant's
-/// tree changed since the last one, which is noticed. Deterministic; the same bits on every thread and every
-/// processor.
+/// tree changed since the last one, which is noticed. Deterministic; the same bits on any number of threads
+/// and on every processor.
 class PlantStepper {
  public:
   /// external: one Wrench per particle, or empty. transient: contacts and grabs of this step, added to
@@ -57,13 +58,14 @@ class PlantStepper {
   Outcome substep(const Plant& plant, const Substep& step, const std::vector<Motion>& from,
                   std::vector<Motion>& to, double& gap) noexcept;
   void sort_springs(const Plant& plant, std::span<const WorldSpring> transient) noexcept;
-  void add_loads(const Substep& step, const EliminationOrder::Part& part, uint32_t number) noexcept;
+  void add_loads(const Substep& step, const EliminationOrder::Part& part, uint32_t number,
+                 const lanes::StepView& view) noexcept;
 
   const lanes::Kernels* kernels_ = &lanes::best_kernels();
   EliminationOrder order_;
   std::vector<const WorldSpring*> springs_;  // anchors and transient ones, by part
   std::vector<uint32_t> first_spring_;       // of each part and the top
-  ShapeMatchingStepper shape_matching_;  // for plants of that scheme
+  ShapeMatchingStepper shape_matching_;      // for plants of that scheme
   std::vector<Motion> now_, next_;           // the plant's own state stays untouched until a step is accepted
 };
 

@@ -7,17 +7,30 @@
 namespace liana {
 namespace {
 
-// Calls visit(i) for a particle and all that grows from it, parents first.
-template <class Visit>
-std::vector<bool> mark_subtree(const Plant& plant, ParticleId root, Visit&& visit) {
-  std::vector<bool> marked(plant.particles.size(), false);
-  for (size_t i = root.index(); i < plant.particles.size(); ++i) {
-    const ParticleId parent = plant.particles[i].parent;
-    if (i != root.index() && !(parent.valid() && marked[parent.index()])) continue;
-    marked[i] = true;
-    visit(i);
+// The particle and all that grows from it: along its branch, and every branch that grows from one of these.
+std::vector<char> mark_subtree(const Plant& plant, ParticleId root) {
+  std::vector<char> marked(plant.particles.size(), 0);
+  const BranchId own = plant.particles[root.index()].branch;
+  const auto mark_from = [&](size_t branch, ParticleId first) {
+    const std::vector<ParticleId>& chain = plant.branches[branch].particles;
+    for (auto p = std::lower_bound(chain.begin(), chain.end(), first); p != chain.end(); ++p)
+      marked[p->index()] = 1;
+  };
+  mark_from(own.index(), root);
+  for (size_t b = own.index() + 1; b < plant.branches.size(); ++b) {
+    const std::vector<ParticleId>& chain = plant.branches[b].particles;
+    if (chain.empty() || chain.front() < root) continue;
+    const ParticleId at = plant.particles[chain.front().index()].parent;
+    if (at.valid() && marked[at.index()]) mark_from(b, chain.front());
   }
   return marked;
+}
+
+std::vector<ParticleId> marked_ids(const std::vector<char>& marked, ParticleId root) {
+  std::vector<ParticleId> ids;
+  for (size_t i = root.index(); i < marked.size(); ++i)
+    if (marked[i]) ids.push_back(ParticleId(i));
+  return ids;
 }
 
 // The taken particles as a plant: ids by their order.
@@ -83,6 +96,60 @@ void let_fly(Plant& piece) {
   }
 }
 
+// Takes the marked particles away, of which `root` is the first.
+TopologyChange remove_marked(Plant& plant, ParticleId root, const std::vector<char>& gone) {
+  TopologyChange change;
+  const size_t count = plant.particles.size(), branch_count = plant.branches.size();
+  change.particles.resize(count);
+  change.branches.resize(branch_count);
+
+  // The branch that is cut through, and how much of it goes.
+  const BranchId cut = plant.particles[root.index()].branch;
+  const std::vector<ParticleId>& chain = plant.branches[cut.index()].particles;
+  const auto first = std::find(chain.begin(), chain.end(), root);
+  const double whole_length = length_of(plant, chain), cut_length = length_of(plant, {first, chain.end()});
+
+  size_t kept = 0;
+  for (size_t i = 0; i < count; ++i)
+    if (!gone[i]) change.particles[i] = ParticleId(kept++);
+
+  // A branch is a chain with its ids ascending: what goes is its end, what stays in place its beginning.
+  size_t branches = 0;
+  for (size_t b = 0; b < branch_count; ++b) {
+    Branch& branch = plant.branches[b];
+    std::vector<ParticleId>& own = branch.particles;
+    if (!own.empty() && gone[own.front().index()]) continue;
+    while (!own.empty() && gone[own.back().index()]) own.pop_back();
+    if (BranchId(b) == cut) branch.length *= 1 - cut_length / whole_length;
+    const BranchId id = change.branches[b] = BranchId(branches++);
+    if (branch.parent.valid()) branch.parent = change.branches[branch.parent.index()];
+    for (auto p = own.rbegin(); p != own.rend() && root < *p; ++p) *p = change.particles[p->index()];
+    if (id == BranchId(b)) continue;
+    for (auto p = own.begin(); p != own.end() && *p < root; ++p) plant.particles[p->index()].branch = id;
+    plant.branches[id.index()] = std::move(branch);
+  }
+  plant.branches.resize(branches);
+  change.shortened = change.branches[cut.index()];
+
+  // Particles before the first that goes stay where they are.
+  for (size_t i = root.index(); i < count; ++i) {
+    if (gone[i]) continue;
+    const size_t to = change.particles[i].index();
+    Particle& particle = plant.particles[to] = plant.particles[i];
+    if (particle.parent.valid()) particle.parent = change.particles[particle.parent.index()];
+    particle.branch = change.branches[particle.branch.index()];
+    plant.motion[to] = plant.motion[i];
+  }
+  plant.particles.resize(kept);
+  plant.motion.resize(kept);
+
+  std::erase_if(plant.anchors, [&](WorldSpring& anchor) {
+    anchor.particle = change.particles[anchor.particle.index()];
+    return !anchor.particle.valid();
+  });
+  return change;
+}
+
 }  // namespace
 
 BranchId append_branch(Plant& plant, Branch branch, ParticleId at, std::span<const Particle> particles,
@@ -106,60 +173,14 @@ BranchId append_branch(Plant& plant, Branch branch, ParticleId at, std::span<con
 
 TopologyChange remove_subtree(Plant& plant, ParticleId root) {
   remember_shades(plant);
-  TopologyChange change;
-  const std::vector<bool> gone = mark_subtree(plant, root, [](size_t) {});
-  const size_t count = plant.particles.size(), branch_count = plant.branches.size();
-  change.particles.resize(count);
-  change.branches.resize(branch_count);
-
-  // The branch that is cut through, and how much of it goes.
-  const BranchId cut = plant.particles[root.index()].branch;
-  const std::vector<ParticleId>& chain = plant.branches[cut.index()].particles;
-  const auto first = std::find(chain.begin(), chain.end(), root);
-  const double whole_length = length_of(plant, chain), cut_length = length_of(plant, {first, chain.end()});
-
-  // Particles before the first that goes stay where they are.
-  size_t kept = root.index();
-  for (size_t i = 0; i < kept; ++i) change.particles[i] = ParticleId(i);
-  for (size_t i = kept; i < count; ++i) {
-    if (gone[i]) continue;
-    change.particles[i] = ParticleId(kept);
-    Particle& particle = plant.particles[kept] = plant.particles[i];
-    if (particle.parent.valid()) particle.parent = change.particles[particle.parent.index()];
-    plant.motion[kept++] = plant.motion[i];
-  }
-  plant.particles.resize(kept);
-  plant.motion.resize(kept);
-
-  size_t branches = 0;
-  for (size_t b = 0; b < branch_count; ++b) {
-    Branch& branch = plant.branches[b];
-    const size_t before = branch.particles.size();
-    for (ParticleId& p : branch.particles) p = change.particles[p.index()];
-    std::erase(branch.particles, ParticleId());  // a chain: what goes is its end
-    if (branch.particles.empty() && before > 0) continue;
-    if (BranchId(b) == cut) branch.length *= 1 - cut_length / whole_length;
-    change.branches[b] = BranchId(branches);
-    if (branch.parent.valid()) branch.parent = change.branches[branch.parent.index()];
-    if (branches != b) plant.branches[branches] = std::move(branch);
-    ++branches;
-  }
-  plant.branches.resize(branches);
-  change.shortened = change.branches[cut.index()];
-  if (branches < branch_count)
-    for (Particle& particle : plant.particles) particle.branch = change.branches[particle.branch.index()];
-
-  std::erase_if(plant.anchors, [&](WorldSpring& anchor) {
-    anchor.particle = change.particles[anchor.particle.index()];
-    return !anchor.particle.valid();
-  });
-  return change;
+  return remove_marked(plant, root, mark_subtree(plant, root));
 }
 
 Plant detach_subtree(Plant& plant, ParticleId root, TopologyChange* change, DetachedFrom* from) {
   remember_shades(plant);
+  const std::vector<char> marked = mark_subtree(plant, root);
   DetachedFrom origin;
-  mark_subtree(plant, root, [&](size_t i) { origin.particles.push_back(ParticleId(i)); });
+  origin.particles = marked_ids(marked, root);
   Plant piece = copy_of(plant, origin.particles, origin);
   for (size_t b = 0; b < piece.branches.size(); ++b) {
     const Branch& whole = plant.branches[origin.branches[b].index()];
@@ -168,7 +189,7 @@ Plant detach_subtree(Plant& plant, ParticleId root, TopologyChange* change, Deta
           length_of(piece, piece.branches[b].particles) / length_of(plant, whole.particles);
   }
   let_fly(piece);
-  TopologyChange moved = remove_subtree(plant, root);
+  TopologyChange moved = remove_marked(plant, root, marked);
   if (change) *change = std::move(moved);
   if (from) *from = std::move(origin);
   return piece;
@@ -185,7 +206,8 @@ void add_carried(const Plant& plant, ParticleId at, BranchId branch, double mass
 
 double subtree_mass(const Plant& plant, ParticleId root) {
   double mass = 0;
-  mark_subtree(plant, root, [&](size_t i) { mass += plant.particles[i].mass; });
+  for (const ParticleId id : marked_ids(mark_subtree(plant, root), root))
+    mass += plant.particles[id.index()].mass;
   return mass;
 }
 

@@ -44,7 +44,7 @@ Plant detach_subtree(Plant& plant, ParticleId root, TopologyChange* change = nul
 void add_carried(const Plant& plant, ParticleId at, BranchId branch, double mass,
                  std::vector<double>& carried);
 
-/// kg, of a particle and all that grows from it. In the time of the particles after it.
+/// kg, of a particle and all that grows from it. In the time of the branches after it.
 double subtree_mass(const Plant& plant, ParticleId root);
 
 }  // namespace liana

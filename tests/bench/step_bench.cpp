@@ -44,8 +44,9 @@ double best_seconds(int turns, Work&& work) {
   return best;
 }
 
-double step_ns(Plant& plant, int turns) {
+double step_ns(Plant& plant, int turns, const lanes::Kernels& kernels = lanes::best_kernels()) {
   PlantStepper stepper;
+  stepper.use(kernels);
   return 1e9 * best_seconds(turns, [&] { stepper.step(plant, {}, {}, {}); }) /
          static_cast<double>(plant.particles.size());
 }
@@ -54,14 +55,16 @@ void full_step(benchmark::State& state) {
   Plant plant = tree_of(static_cast<double>(state.range(0)));
   Plant plain = plant;
   const auto n = static_cast<double>(plant.particles.size());
-  double ns = 1e9, plain_ns = 1e9;
+  double ns = 1e9, avx2_ns = 1e9, plain_ns = 1e9;
   test::ReferenceStepper reference;
   for (auto _ : state) {
     ns = std::min(ns, step_ns(plant, 20));
+    if (lanes::avx2_kernels()) avx2_ns = std::min(avx2_ns, step_ns(plant, 20, *lanes::avx2_kernels()));
     plain_ns = std::min(plain_ns, 1e9 / n * best_seconds(5, [&] { reference.step(plain, {}, {}, {}); }));
   }
   state.counters["particles"] = n;
   state.counters["ns_per_particle"] = ns;
+  if (lanes::avx2_kernels()) state.counters["avx2_ns"] = avx2_ns;
   state.counters["plain_ns"] = plain_ns;
   state.counters["plain/lanes"] = plain_ns / ns;
 }
@@ -119,6 +122,7 @@ void factor_and_solve(benchmark::State& state) {
       .block = block.data(),
       .record = record.data(),
       .packs = order.packs().data(),
+      .pack_count = order.packs().size(),
       .gravity = {0, -9.81, 0},
       .h = h,
       .alpha_m = method.alpha_m,
@@ -221,6 +225,21 @@ void two_threads_against_one(benchmark::State& state) {
 }
 BENCHMARK(two_threads_against_one)->Unit(benchmark::kMillisecond)->UseRealTime();
 
+// The same for one plant of 25,000 particles, whose parts the threads share.
+void one_plant_on_two_threads(benchmark::State& state) {
+  Plant plant = tree_of(25000);
+  PlantStepper stepper;
+  double best[2] = {1e9, 1e9};
+  for (auto _ : state)
+    for (int turn = 0; turn < 40; ++turn)
+      for (unsigned threads : {1u, 2u})
+        best[threads - 1] =
+            std::min(best[threads - 1], timed([&] { stepper.step(plant, {}, {}, {.threads = threads}); }));
+  state.counters["speedup"] = best[0] / best[1];
+  state.counters["ns_per_particle"] = 1e9 * best[1] / static_cast<double>(plant.particles.size());
+}
+BENCHMARK(one_plant_on_two_threads)->Unit(benchmark::kMillisecond)->UseRealTime();
+
 // Cut one branch off a single plant of 25,000 particles, calibrate those that carried it anew, take the next
 // step's order; put it back.
 void change_one_branch(benchmark::State& state) {
@@ -229,6 +248,8 @@ void change_one_branch(benchmark::State& state) {
   PlantStepper stepper;
   stepper.step(plant, {}, {}, {});
   HeldChain chain;
+  EliminationOrder order;  // a stepper's own: it has the memory from the step before
+  order.update(plant.particles, false);
   double cut = 1e9, grow = 1e9, step = 1e9;
   for (auto _ : state) {
     step = std::min(step, best_seconds(3, [&] { stepper.step(plant, {}, {}, {}); }));
@@ -236,7 +257,6 @@ void change_one_branch(benchmark::State& state) {
     const Branch branch = plant.branches[id.index()];
     const ParticleId at = plant.particles[branch.particles[0].index()].parent;
     Plant piece;
-    EliminationOrder order;
     cut = std::min(cut, best_seconds(1, [&] {
                      add_carried(plant, at, id, -subtree_mass(plant, branch.particles[0]), carried);
                      TopologyChange change;

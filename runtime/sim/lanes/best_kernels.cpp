@@ -3,7 +3,9 @@
 namespace liana::lanes {
 
 const Kernels& best_kernels() {
-  static const Kernels& best = avx2_kernels() ? *avx2_kernels() : portable_kernels();
+  static const Kernels& best = avx512_kernels() ? *avx512_kernels()
+                               : avx2_kernels() ? *avx2_kernels()
+                                                : portable_kernels();
   return best;
 }
 

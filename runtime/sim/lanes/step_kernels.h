@@ -51,6 +51,42 @@ inline Vec3L direction(const double* record, int k) {
   return load3(record + 4 * (k < 2 ? kFrame + 3 * k : kBendFrame + 3 * (k - 3)));
 }
 
+// Calls data into the second-level cache. The processor drops requests that come faster than a dozen at a
+// time, so they are strewn among the arithmetic.
+template <int numbers, int write = 0>
+inline void fetch(const double* at) {
+  for (int i = 0; i < numbers; i += 8) __builtin_prefetch(at + i, write, 2);
+}
+
+// Packs from the one at work to those whose data is asked for, and to the record that is written next.
+constexpr size_t kNear = 8, kNearRecord = 4;
+
+// What belongs to another pack, piece by piece: by lane, or an eighth of its record.
+struct Fetch {
+  const StepView& view;
+  const Pack& pack;
+
+  Fetch(const StepView& v, size_t i) : view(v), pack(v.packs[i < v.pack_count ? i : v.pack_count - 1]) {}
+  void particle(int lane) const { fetch<kParticleStride>(particle_at(lane)); }
+  void joint(int lane) const { fetch<6>(particle_at(lane) + 10); }  // its two anchor points
+  void from(int lane) const {
+    fetch<kMotionStride>(view.from + std::size_t(kMotionStride) * pack.self[lane]);
+  }
+  void to(int lane) const { fetch<kMotionStride, 1>(view.to + std::size_t(kMotionStride) * pack.self[lane]); }
+  void record(int part) const { fetch<kPart>(record_at(part)); }
+  void record_to_write(int part) const { fetch<kPart, 1>(record_at(part)); }
+
+ private:
+  static constexpr int kPart = 4 * kRecordLanes / 8;
+
+  const double* particle_at(int lane) const {
+    return view.particle + std::size_t(kParticleStride) * pack.self[lane];
+  }
+  const double* record_at(int part) const {
+    return view.record + (&pack - view.packs) * (4 * kRecordLanes) + part * kPart;
+  }
+};
+
 struct PoseL {
   Vec3L position, velocity, angular_velocity;
   QuatL orientation;
@@ -102,6 +138,7 @@ inline void predict(const StepView& view, size_t begin, size_t end) {
   const Vec3L gravity{all(view.gravity[0]), all(view.gravity[1]), all(view.gravity[2])};
   for (size_t i = begin; i < end; ++i) {
     const Pack& pack = view.packs[i];
+    const Fetch next(view, i + kNear);
     const int lanes = static_cast<int>(pack.count);
     const MotionL m = get_motion({view.from, kMotionStride, pack.self});
     const Rows<const double> particle(view.particle, kParticleStride, pack.self);
@@ -112,10 +149,12 @@ inline void predict(const StepView& view, size_t begin, size_t end) {
 
     PoseL pose;
     pose.position = m.position + t * m.velocity + t2 * m.acceleration;
+    next.particle(0), next.from(0);
     pose.orientation = rotation_exp(t * m.angular_velocity + t2 * m.angular_acceleration) * m.orientation;
     pose.velocity = m.velocity + tv * m.acceleration;
     pose.angular_velocity = m.angular_velocity + tv * m.angular_acceleration;
     set_pose({view.pose, kPoseStride, pack.slot}, lanes, pose);
+    next.particle(1), next.from(1);
 
     const Mat3L R = matrix(pose.orientation);
     const Vec3L* r = R.column;
@@ -126,6 +165,7 @@ inline void predict(const StepView& view, size_t begin, size_t end) {
     const Lanes zx = s[0].z * r[0].x + s[1].z * r[1].x + s[2].z * r[2].x;
     const Lanes zy = s[0].z * r[0].y + s[1].z * r[1].y + s[2].z * r[2].y;
     const Lanes zz = s[0].z * r[0].z + s[1].z * r[1].z + s[2].z * r[2].z;
+    next.particle(2), next.from(2);
     const Vec3L spin = all(-view.alpha_m) * m.angular_acceleration - d_M * pose.angular_velocity;
     const Vec3L force = mass * (gravity - view.alpha_m * m.acceleration - d_M * pose.velocity);
     const Vec3L torque{xx * spin.x + yx * spin.y + zx * spin.z, yx * spin.x + yy * spin.y + zy * spin.z,
@@ -133,6 +173,7 @@ inline void predict(const StepView& view, size_t begin, size_t end) {
     const Lanes implicit = all(1 - view.alpha_m) + view.velocity_rate * d_M, zero = all(0);
     const Lanes M = implicit * mass;
     const Rows<double> block(view.block, kBlockStride, pack.slot);
+    next.particle(3), next.from(3);
     block.set(0, lanes, M, zero, M, zero);
     block.set(4, lanes, zero, M, zero, zero);
     block.set(8, lanes, zero, implicit * xx, zero, zero);
@@ -148,6 +189,7 @@ inline void assemble(const StepView& view, size_t begin, size_t end) {
   for (size_t i = begin; i < end; ++i) {
     const Pack& pack = view.packs[i];
     double* record = view.record + i * (4 * kRecordLanes);
+    const Fetch next(view, i + view.ahead), near(view, i + kNearRecord);
     const PoseL child = get_pose({view.pose, kPoseStride, pack.slot});
     const PoseL parent = get_pose({view.pose, kPoseStride, pack.parent});
     const Rows<const double> particle(view.particle, kParticleStride, pack.self);
@@ -161,6 +203,7 @@ inline void assemble(const StepView& view, size_t begin, size_t end) {
     particle.get(20, C_s.x, C_s.y, C_s.z, C_b.x);
     particle.get(24, C_b.y, C_b.z, rest_force.x, rest_force.y);
     particle.get(28, rest_force.z, rest_moment.x, rest_moment.y, rest_moment.z);
+    next.particle(0), near.record_to_write(0);
 
     const QuatL frame = parent.orientation * rest;
     const Mat3L F = matrix(frame);
@@ -169,16 +212,19 @@ inline void assemble(const StepView& view, size_t begin, size_t end) {
     const Vec3L e_s = transposed_times(F, r_p - rotate(parent.orientation, on_parent));
     const RotationLogL log = rotation_log(conjugate(frame) * child.orientation);
     const Vec3L& phi = log.vector;
+    next.from(0), near.record_to_write(1), near.record_to_write(2);
 
     const Vec3L slip = child.velocity + cross(child.angular_velocity, r_c) - parent.velocity -
                        cross(parent.angular_velocity, r_p);
     const Vec3L shear_rate = transposed_times(F, slip);
     const Vec3L turning = transposed_times(F, child.angular_velocity - parent.angular_velocity);
+    next.particle(1), near.record_to_write(3);
     const Vec3L about = cross(phi, turning);
     const Vec3L bend_rate = turning - 0.5 * about + log.rate2 * cross(phi, about);
     const Vec3L force = F * (rest_force - times(C_s, e_s + d_K * shear_rate));
     const Vec3L m = rest_moment - times(C_b, phi + d_K * bend_rate), back = cross(phi, m);
     const Vec3L moment = F * (m + 0.5 * back + log.rate2 * cross(phi, back));  // F Bᵀ m
+    next.from(1), near.record_to_write(4);
 
     // D e_k = F B⁻¹ e_k, with [φ]× e_k written out
     const Lanes zero = all(0);
@@ -190,11 +236,13 @@ inline void assemble(const StepView& view, size_t begin, size_t end) {
       store3(F * d, record + 4 * (kBendFrame + 3 * k));
     }
     store3(r_c, record + 4 * kLeverChild);
+    near.record_to_write(5), near.record_to_write(6);
     store3(r_p, record + 4 * kLeverParent);
     const Lanes implicit = all(view.position_rate) + view.velocity_rate * d_K;
     store3(implicit * C_s, record + 4 * kSpring);
     store3(implicit * C_b, record + 4 * (kSpring + 3));
     store3(force, record + 4 * kAction);
+    near.record_to_write(7);
     store3(moment, record + 4 * (kAction + 3));
     const Lanes length = max(half_length + half_length, all(kShortest));
     store(max(max(C_s.x, C_s.y), C_s.z) > zero ? all(1) / (length * length) : zero, record + 4 * kGapWeight);
@@ -263,6 +311,7 @@ inline void factor(const StepView& view, size_t begin, size_t end) {
   for (size_t i = begin; i < end; ++i) {
     const Pack& pack = view.packs[i];
     double* record = view.record + i * (4 * kRecordLanes);
+    const Fetch next(view, i + view.ahead);
     const Rows<double> own(view.block, kBlockStride, pack.slot);
     InertiaL A;
     Vec3L force, moment;
@@ -277,6 +326,7 @@ inline void factor(const StepView& view, size_t begin, size_t end) {
 
     const Vec3L r_c = load3(record + 4 * kLeverChild), r_p = load3(record + 4 * kLeverParent);
     shift(A, r_c);
+    next.particle(2);
     moment = moment - cross(r_c, force);
     const Vec3L joint_force = load3(record + 4 * kAction), joint_moment = load3(record + 4 * (kAction + 3));
     force = force + joint_force;
@@ -290,6 +340,8 @@ inline void factor(const StepView& view, size_t begin, size_t end) {
       double* spring = record + 4 * (kSpring + k);
       take_rank(A, force, moment, ut, ur, dot(d, ut) + load(spring), dot(d, force),
                 record + 4 * (kRow + 6 * k), spring);
+      if (k == 0) next.from(2);
+      if (k == 2) next.particle(3);
     }
     for (int k = 3; k < 6; ++k) {
       const Vec3L d = direction(record, k);
@@ -302,6 +354,7 @@ inline void factor(const StepView& view, size_t begin, size_t end) {
                 record + 4 * (kRow + 6 * k), spring);
     }
     force = force - joint_force;
+    next.from(3);
     moment = moment - joint_moment;
     shift(A, -r_p);
     moment = moment + cross(r_p, force);
@@ -360,30 +413,39 @@ inline AdvanceResult advance(const StepView& view, size_t begin, size_t end) {
   for (size_t i = end; i-- > begin;) {
     const Pack& pack = view.packs[i];
     const double* record = view.record + i * (4 * kRecordLanes);
+    const Fetch next(view, i < kNear ? 0 : i - kNear);
+    next.record(7), next.from(0);
     const PoseL parent = get_pose({view.pose, kPoseStride, pack.parent});
     const AccelerationL a1 = substitute_pack(record, {parent.velocity, parent.angular_velocity});
+    next.record(5), next.from(1), next.joint(1);
     const MotionL m = get_motion({view.from, kMotionStride, pack.self});
+    next.record(6), next.to(0), next.joint(0);
     MotionL n;
     n.acceleration = a1.linear;
     n.angular_acceleration = a1.angular;
     n.position = m.position + h * m.velocity + h2 * (b0 * m.acceleration + b1 * n.acceleration);
+    next.record(4), next.to(1);
     const Vec3L turn =
         h * m.angular_velocity + h2 * (b0 * m.angular_acceleration + b1 * n.angular_acceleration);
     n.orientation = normalized(rotation_exp(turn) * m.orientation);
+    next.record(3), next.from(2), next.joint(2);
     n.velocity = m.velocity + h * ((1 - c) * m.acceleration + c * n.acceleration);
     n.angular_velocity =
         m.angular_velocity + h * ((1 - c) * m.angular_acceleration + c * n.angular_acceleration);
 
     const int lanes = static_cast<int>(pack.count);
+    next.record(2), next.to(2);
     set_motion({view.to, kMotionStride, pack.self}, lanes, n);
     set_pose({view.pose, kPoseStride, pack.slot}, lanes,
              {n.position, n.acceleration, n.angular_acceleration, n.orientation});
+    next.record(1), next.from(3), next.joint(3);
 
     const Rows<const double> particle(view.particle, kParticleStride, pack.self);
     Vec3L on_parent, on_self;
     Lanes skip, skip2;
     particle.get(8, skip, skip2, on_parent.x, on_parent.y);
     particle.get(12, on_parent.z, on_self.x, on_self.y, on_self.z);
+    next.record(0), next.to(3);
     const Vec3L open =
         n.position + rotate(n.orientation, on_self) - parent.position - rotate(parent.orientation, on_parent);
     gap = max(dot(open, open) * load(record + 4 * kGapWeight), gap);

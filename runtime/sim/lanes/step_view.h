@@ -34,17 +34,24 @@ struct StepView {
   double* block;           ///< kBlockStride per slot
   double* record;          ///< kRecordLanes × 4 per pack
   const Pack* packs;       ///< children in earlier packs than parents
+  size_t pack_count;
   double gravity[3];
   double h, alpha_m, alpha_f;
   /// x₁ = x₀ + h v₀ + h² (before a₀ + after a₁): ½−β and β. v₁ = v₀ + h ((1−γ) a₀ + γ a₁).
   double before, after, gamma;
   double position_rate, velocity_rate;  ///< k₁, k₂
+  size_t ahead = 0;  ///< packs to the one whose data is called into the cache while one is eliminated
 };
 
 /// What a run over some packs found out.
 struct AdvanceResult {
   double gap = 0;      ///< largest joint gap over the particle's length
   bool finite = true;  ///< every number of the new state is
+
+  void add(const AdvanceResult& more) {
+    if (more.gap > gap) gap = more.gap;
+    finite = finite && more.finite;
+  }
 };
 
 /// The phases of a substep, in order; each runs over packs [begin, end).
@@ -60,7 +67,8 @@ struct Kernels {
 /// The fastest that this processor can run. All give the same bits.
 const Kernels& best_kernels();
 const Kernels& portable_kernels();
-/// Null when the processor (or the build) has no AVX2.
+/// Null when the processor (or the build) has no AVX2, or not AVX-512 with VL and DQ.
 const Kernels* avx2_kernels();
+const Kernels* avx512_kernels();
 
 }  // namespace liana::lanes
