@@ -28,6 +28,7 @@ constexpr double kBothSides =
     1.6;  // wrapped area over area: a sheet, or a tube wrapped inside and out, has 2
 constexpr double kMostWrapTriangles = 2500;  // expected; more take seconds, and alpha can be coarser
 constexpr double kWholeLength = 0.8;         // of the box's diagonal: the length of what is long and thin
+constexpr double kWide = 0.4;                // second over first spread, standard deviations of the area
 constexpr double kLongAndThin = 6;           // π extent² / area: length over diameter of a tube
 constexpr double kPlane = 1e-3;              // thinnest over longest extent (standard deviations)
 
@@ -46,6 +47,21 @@ bool is_plane(const Mesh& mesh) {
   for (const Vec3& p : mesh.positions) spread += (p - mean) * (p - mean).transpose();
   const Vec3 axes = Eigen::SelfAdjointEigenSolver<Mat3>(spread, Eigen::EigenvaluesOnly).eigenvalues();
   return !(axes[0] > kPlane * kPlane * axes[2]);
+}
+
+/// Spread in two directions at least, as a crown is, and a branch is not.
+bool is_wide(const Mesh& mesh) {
+  double area = 0;
+  Vec3 first = Vec3::Zero();
+  Mat3 second = Mat3::Zero();
+  for (const Triangle& t : mesh.triangles) {
+    const double a = area_vector(mesh, t).norm();
+    const Vec3 p = (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) / 3;
+    area += a, first += a * p, second += a * p * p.transpose();
+  }
+  const Mat3 spread = second / area - first * first.transpose() / (area * area);
+  const Vec3 axes = Eigen::SelfAdjointEigenSolver<Mat3>(spread, Eigen::EigenvaluesOnly).eigenvalues();
+  return axes[1] > kWide * kWide * axes[2];
 }
 
 bool has_border(const Mesh& mesh) {
@@ -75,11 +91,19 @@ class Ladder {
   }
 
  private:
-  /// A branch whose root was found halfway up, or most of which is lost.
+  /// A branch whose root was found halfway up, or most of which is lost. A crown may be wider than it is
+  /// long: of that only what lies far from the root counts.
   bool is_short(const SolidDomain& solid) const {
-    const double size = extent(domain_.surface);
-    return domain_.kind == DomainKind::Branch && solid.length < kWholeLength * size &&
-           kPi * size * size > kLongAndThin * surface_area(domain_.surface);
+    const Mesh& whole = domain_.surface;
+    const double size = extent(whole);
+    if (domain_.kind != DomainKind::Branch || solid.length >= kWholeLength * size ||
+        kPi * size * size <= kLongAndThin * surface_area(whole))
+      return false;
+    if (!is_wide(whole)) return true;
+    double reach = 0;
+    for (const Triangle& t : whole.triangles)
+      for (const uint32_t v : t) reach = std::max(reach, (whole.positions[v] - solid.root).norm());
+    return solid.length < kWholeLength * reach;
   }
 
   std::optional<SolidDomain> try_surface(const Mesh& surface, const std::string& notes) {

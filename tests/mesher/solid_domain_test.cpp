@@ -11,6 +11,7 @@
 #include "mesher/base/weld.h"
 #include "mesher/io/plant_file.h"
 #include "mesher/surface/self_intersection.h"
+#include "tests/support/damage.h"
 #include "tests/support/shapes.h"
 
 namespace liana {
@@ -407,31 +408,11 @@ TEST(SolidDomain, DamagedSurfacesEndInASolidOrInAReason) {
     SegmentedPlant plant = plain;
     const size_t which = random() % plant.domains.size();
     Mesh& mesh = plant.domains[which].surface;
-    for (unsigned harm = 0; harm <= random() % 4; ++harm) {
-      const size_t t = random() % mesh.triangles.size(), v = random() % mesh.positions.size();
-      switch (random() % 7) {
-        case 0:
-          mesh.triangles.erase(mesh.triangles.begin() + static_cast<ptrdiff_t>(t));
-          break;
-        case 1:
-          std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
-          break;
-        case 2:
-          mesh.triangles.push_back(mesh.triangles[t]);
-          break;
-        case 3:
-          mesh.positions[v] = mesh.positions[random() % mesh.positions.size()];
-          break;
-        case 4:
-          mesh.positions[v].x() += 1e-3 * double(random() % 40 + 1);
-          break;
-        case 5:
-          mesh.triangles[t][random() % 3] = static_cast<uint32_t>(v);
-          break;
-        case 6:
-          for (Vec3& p : mesh.positions) p.y() = 0;
-          break;
-      }
+    for (unsigned i = 0; i <= random() % 4; ++i) {
+      if (random() % 7 == 0)
+        for (Vec3& p : mesh.positions) p.y() = 0;
+      else
+        harm(mesh, random);
     }
     mesh = weld(mesh);
     try {
