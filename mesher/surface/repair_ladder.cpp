@@ -77,16 +77,18 @@ class Ladder {
       : domain_(plant.domains[id.index()]), attachment_(plant, id) {}
 
   SolidDomain climb() {
-    if (auto solid = try_surface(domain_.surface, "")) return *solid;
+    if (auto solid = try_surface(domain_.surface, "", {})) return *solid;
     const Error reason = *failure_;
     const Mended mended = mend(domain_.surface);
     if (!mended.notes.empty())
-      if (auto solid = try_surface(mended.mesh, mended.notes)) return *solid;
-    if (auto solid = untangle(mended.notes)) return *solid;
+      if (auto solid = try_surface(mended.mesh, mended.notes, {mended.dropped, mended.dropped_volume}))
+        return *solid;
+    if (auto solid = untangle(mended)) return *solid;
     if (auto solid = wrap(mended.mesh)) return *solid;
     auto beam = beam_shape(domain_, attachment_);
     if (!beam || is_short(*beam)) throw reason;
-    beam->route = "beam";
+    // A wide sheet has no centreline to speak of, and a folded one is no tube.
+    beam->route = domain_.kind == DomainKind::Leaf ? "rough-beam" : "beam";
     return *beam;
   }
 
@@ -106,7 +108,12 @@ class Ladder {
     return solid.length < kWholeLength * reach;
   }
 
-  std::optional<SolidDomain> try_surface(const Mesh& surface, const std::string& notes) {
+  /// Share of the area, m³.
+  struct Loss {
+    double area = 0, volume = 0;
+  };
+
+  std::optional<SolidDomain> try_surface(const Mesh& surface, const std::string& notes, const Loss& loss) {
     attempt_ = {};
     try {
       SolidDomain solid = attempt_solid(domain_, surface, attachment_, attempt_);
@@ -124,6 +131,8 @@ class Ladder {
         return {};
       }
       solid.route += notes;
+      solid.lost_area = 1 - (1 - loss.area) * attempt_.kept;
+      solid.lost_volume = (loss.volume + attempt_.lost_volume) / solid.volume;
       return solid;
     } catch (const Error& error) {
       if (error.kind != Error::Kind::Input) throw;
@@ -132,12 +141,16 @@ class Ladder {
     }
   }
 
-  std::optional<SolidDomain> untangle(const std::string& notes) {
+  std::optional<SolidDomain> untangle(const Mended& mended) {
     if (attempt_.crossing.triangles.empty()) return {};
     const double volume = signed_volume(attempt_.crossing);
     const std::optional<Mesh> mesh = untangled(attempt_.crossing);
-    if (!mesh || !(std::abs(signed_volume(*mesh) / volume - 1) < kUntangled)) return {};
-    return try_surface(*mesh, notes + "+untangled");
+    if (!mesh) return {};
+    const double changed = std::abs(signed_volume(*mesh) - volume);
+    if (!(changed < kUntangled * std::abs(volume))) return {};
+    const double kept = attempt_.kept, others = attempt_.lost_volume;
+    return try_surface(*mesh, mended.notes + "+untangled",
+                       {1 - (1 - mended.dropped) * kept, mended.dropped_volume + others + changed});
   }
 
   /// Alpha grows if the wrap would be too large or enters the surface by its openings. A sheet is none of its
@@ -161,7 +174,7 @@ class Ladder {
         continue;
       const Mesh pulled = pull_back(*wrapped, mesh, 3 * offset);
       if (!self_intersects(pulled)) wrapped = pulled;
-      if (auto solid = try_surface(*wrapped, "+alpha-wrapped")) return solid;
+      if (auto solid = try_surface(*wrapped, "+alpha-wrapped", {})) return solid;
     }
     return {};
   }

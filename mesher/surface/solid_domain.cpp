@@ -172,6 +172,7 @@ SolidDomain attempt_solid(const Domain& domain, const Mesh& surface, const Attac
 
   CleanShell shell = clean_shell(surface, where);
   attempt.kept = shell.kept;
+  attempt.lost_volume = shell.lost_volume;
   const Adjacency adjacency = find_adjacency(shell.mesh);
   const std::vector<std::vector<uint32_t>> loops = border_loops(shell.mesh, adjacency);
   const bool flat = !loops.empty() && is_sheet(shell.mesh, loops);
