@@ -22,7 +22,8 @@ struct DomainModes {
   size_t solved_as =
       0;  ///< the solid whose solution this is, by index: itself, or an earlier copy of its shape
   std::string failure;   ///< why there are no modes; empty if there are
-  bool as_beam = false;  ///< solved as a beam through its sections (beam_mode.h), within 3 %
+  bool as_beam = false;  ///< solved as a beam through its sections (beam_mode.h), within 3 % where `note`
+                         ///< does not say rough
   std::string note;      ///< what a user should know of the way, each with a leading "+"
 };
 

@@ -103,14 +103,22 @@ std::string encode(const CachedCopy& copy) {
 }
 
 std::string encode(const SolidDomain& solid, bool with_surface) {
-  const auto& [surface, is_root, root, length, volume, centreline, route, is_beam] = solid;
+  const auto& [surface, is_root, root, length, volume, centreline, route, is_beam, lost_area, lost_volume] =
+      solid;
   const auto& [positions, triangles] = with_surface ? surface : Mesh{};
   Packer packer;
   packer.add(Content::Solid)
       .add(positions)
       .add(triangles)
       .add(with_surface ? is_root : std::vector<uint8_t>{});
-  packer.add(root).add(length).add(volume).add(route).add(uint8_t{is_beam}).add(static_cast<uint32_t>(centreline.size()));
+  packer.add(root)
+      .add(length)
+      .add(volume)
+      .add(route)
+      .add(uint8_t{is_beam})
+      .add(lost_area)
+      .add(lost_volume)
+      .add(static_cast<uint32_t>(centreline.size()));
   for (const auto& [centre, half_width, half_thickness, thin_axis, area] : centreline)
     packer.add(centre).add(half_width).add(half_thickness).add(thin_axis).add(area);
   return packer.bytes();
@@ -132,7 +140,14 @@ std::variant<CachedCopy, SolidDomain> decode_geometry(std::string_view bytes) {
   uint32_t sections;
   uint8_t is_beam;
   unpacker.get(solid.surface.positions).get(solid.surface.triangles).get(solid.is_root);
-  unpacker.get(solid.root).get(solid.length).get(solid.volume).get(solid.route).get(is_beam).get(sections);
+  unpacker.get(solid.root)
+      .get(solid.length)
+      .get(solid.volume)
+      .get(solid.route)
+      .get(is_beam)
+      .get(solid.lost_area)
+      .get(solid.lost_volume)
+      .get(sections);
   solid.is_beam = is_beam != 0;
   solid.centreline.resize(sections);
   for (auto& [centre, half_width, half_thickness, thin_axis, area] : solid.centreline)
@@ -163,7 +178,14 @@ std::string encode(const CachedModes& cached, const ElasticMaterial& material) {
   Packer packer;
   packer.add(cached.source_key).add(material.youngs_modulus).add(material.density);
   packer.add(frequencies).add(tip_direction).add(sway_frequencies).add(sway_directions);
-  packer.add(tets).add(dof).add(iterations).add(residual).add(uint8_t{converged}).add(failure).add(uint8_t{as_beam}).add(note);
+  packer.add(tets)
+      .add(dof)
+      .add(iterations)
+      .add(residual)
+      .add(uint8_t{converged})
+      .add(failure)
+      .add(uint8_t{as_beam})
+      .add(note);
   return packer.bytes();
 }
 
@@ -175,7 +197,14 @@ CachedModes decode_modes(std::string_view bytes, const ElasticMaterial& material
   Unpacker unpacker(bytes);
   unpacker.get(cached.source_key).get(youngs_modulus).get(density);
   unpacker.get(m.frequencies).get(m.tip_direction).get(m.sway.frequencies).get(m.sway.directions);
-  unpacker.get(m.tets).get(m.dof).get(m.iterations).get(m.residual).get(converged).get(m.failure).get(as_beam).get(m.note);
+  unpacker.get(m.tets)
+      .get(m.dof)
+      .get(m.iterations)
+      .get(m.residual)
+      .get(converged)
+      .get(m.failure)
+      .get(as_beam)
+      .get(m.note);
   m.converged = converged != 0;
   m.as_beam = as_beam != 0;
   const double faster = std::sqrt(material.youngs_modulus / youngs_modulus * (density / material.density));

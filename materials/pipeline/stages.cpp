@@ -155,9 +155,40 @@ std::string Stages::describe_failure(DomainId id) const {
   return text + fmt::format("; what grew on it ({}) now attaches to {}", children, to);
 }
 
+std::string Stages::describe_losses() const {
+  constexpr double kNothing = 1e-6;
+  std::vector<std::pair<double, size_t>> losses;
+  for (const DomainId id : domains_in())
+    if (const SolidDomain& solid = pieces_[id.index()].solid;
+        std::max(solid.lost_area, solid.lost_volume) > kNothing)
+      losses.push_back({solid.lost_area, id.index()});
+  if (losses.empty()) return {};
+  std::sort(losses.rbegin(), losses.rend());
+  constexpr size_t kNamed = 5;
+  std::string names;
+  for (size_t i = 0; i < std::min(kNamed, losses.size()); ++i) {
+    const auto& [area, index] = losses[i];
+    names += fmt::format("{}'{}' {:.2g} % of its area and {:.2g} % of its volume", i ? ", " : "",
+                         name_of(DomainId(index)), 100 * area, 100 * pieces_[index].solid.lost_volume);
+  }
+  return fmt::format("{} {} something when mended: {}{}", losses.size(),
+                     losses.size() == 1 ? "domain lost" : "domains lost", names,
+                     losses.size() > kNamed ? ", ..." : "");
+}
+
 std::vector<std::string> Stages::notes() const {
   const std::set<std::string> used(groups_.begin(), groups_.end());
   std::vector<std::string> notes = model_notes_;
+  if (const std::string lost = describe_losses(); !lost.empty()) notes.push_back(lost);
+  const auto rough = std::count_if(pieces_.begin(), pieces_.end(), [](const Piece& piece) {
+    return piece.failure.empty() &&
+           (piece.solid.route + piece.modes.note).find("rough-beam") != std::string::npos;
+  });
+  if (rough)
+    notes.push_back(fmt::format(
+        "{} wide or folded sheets could only be solved as rough beams (route): their default frequencies "
+        "may be far off",
+        rough));
   for (const std::string& group : used) {
     const DampingLaw& damping = species_.group(group).damping;
     if (!species_.groups.contains(group))

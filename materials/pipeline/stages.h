@@ -72,6 +72,7 @@ class Stages {
   void refuse_failures() const;
   BakedDomain baked(DomainId domain) const;
   std::string describe_failure(DomainId domain) const;
+  std::string describe_losses() const;  ///< empty if nothing was lost
 
   const SegmentedPlant& plant_;
   const SpeciesLaw& species_;

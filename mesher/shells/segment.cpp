@@ -57,7 +57,7 @@ Parts parts_of(std::vector<Shell> shells, const std::vector<SoupLabel>& labels) 
 }
 
 /// Cuts the skins that hold several branches; every piece becomes a shell. Returns how many skins there were.
-size_t cut_skins(Parts& parts, const std::vector<SoupLabel>& labels) {
+size_t cut_skins(Parts& parts, const std::vector<SoupLabel>& labels, std::vector<std::string>& notes) {
   std::vector<std::vector<SkinPiece>> pieces(parts.shells.size());
   parallel_for(parts.shells.size(), 0, [&](size_t s, unsigned) {
     if (parts.kinds[s] != DomainKind::Branch || !parts.shapes[s].forks) return;
@@ -72,6 +72,10 @@ size_t cut_skins(Parts& parts, const std::vector<SoupLabel>& labels) {
       continue;
     }
     ++skins;
+    if (const SkinPiece& root = pieces[s][0]; root.lost_area > 1e-6)
+      notes.push_back(
+          fmt::format("mending a skin of {} branches cost it {:.2g} % of its area and {:.2g} % of its volume",
+                      pieces[s].size(), 100 * root.lost_area, 100 * root.lost_volume));
     for (SkinPiece& piece : pieces[s])
       shells.push_back(
           {std::move(piece.surface), parts.shells[s].label, piece.parent < 0 ? -1 : first + piece.parent});
@@ -216,7 +220,7 @@ SegmentedPlant segment(const TriangleSoup& soup, Unit unit, const std::string& f
   note_shells(found, notes);
   if (flat) notes.push_back(count(flat, "shell", "shells") + " without area left out");
   Parts parts = parts_of(std::move(found.shells), soup.labels);
-  if (const size_t skins = cut_skins(parts, soup.labels))
+  if (const size_t skins = cut_skins(parts, soup.labels, notes))
     notes.push_back(count(skins, "skin that holds", "skins that hold") +
                     fmt::format(" several branches cut: {} parts in all", parts.shells.size()));
   const auto leaves =

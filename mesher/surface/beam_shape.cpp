@@ -91,9 +91,10 @@ Section section_of(const Slice& slice, const Vec3& centre, const Vec3& tangent, 
     section.half_thickness = std::sqrt(2) * thin;
     section.area = kPi * section.half_width * section.half_thickness;
   } else {  // a strip of width w has mean square w²/12
-    const double width = std::sqrt(12) * wide;
-    section.half_width = width / std::sqrt(3);
-    section.half_thickness = thickness / std::sqrt(3);
+    const double width = std::sqrt(12) * wide,
+                 same = std::pow(1 / (3 * kPi), 0.25);  // moments as the ellipse's
+    section.half_width = same * width;
+    section.half_thickness = same * thickness;
     section.area = width * thickness;
   }
   return section;

@@ -174,7 +174,10 @@ class MergeTree {
 /// Of the area. A skin that would lose more is left whole: the repair ladder mends it and says so.
 constexpr double kMostLost = 0.02;
 
-bool closed_skin(const Mesh& shell, Mesh& skin, Adjacency& adjacency) {
+bool closed_skin(const Mesh& shell, SkinField& field) {
+  Mesh& skin = field.mesh;
+  Adjacency& adjacency = field.adjacency;
+  double lost_volume = 0;  // m³
   if (shell.triangles.size() < 8) return false;
   skin = compacted(shell);
   adjacency = find_adjacency(skin);
@@ -183,6 +186,8 @@ bool closed_skin(const Mesh& shell, Mesh& skin, Adjacency& adjacency) {
       const Mended mended = mend(skin);
       CleanShell cleaned = clean_shell(mended.mesh, "skin");
       if (mended.dropped > kMostLost || cleaned.kept < 1 - kMostLost) return false;
+      field.lost_area = 1 - (1 - mended.dropped) * cleaned.kept;
+      lost_volume = mended.dropped_volume + cleaned.lost_volume;
       skin = std::move(cleaned.mesh);
     } catch (const Error&) {
       return false;
@@ -201,6 +206,7 @@ bool closed_skin(const Mesh& shell, Mesh& skin, Adjacency& adjacency) {
     for (Triangle& t : skin.triangles) std::swap(t[1], t[2]);
     adjacency = find_adjacency(skin);
   }
+  field.lost_volume = lost_volume / signed_volume(skin);
   return true;
 }
 
@@ -215,7 +221,7 @@ uint32_t SkinField::triangle_at_edge(uint32_t a, uint32_t b) const {
 }
 
 bool make_skin_field(const Mesh& shell, SkinField& field) {
-  if (!closed_skin(shell, field.mesh, field.adjacency)) return false;
+  if (!closed_skin(shell, field)) return false;
   const Mesh& mesh = field.mesh;
   SegmentedPlant ground;
   ground.domains.emplace_back();

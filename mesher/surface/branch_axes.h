@@ -16,9 +16,10 @@ namespace liana {
 struct SkinField {
   Mesh mesh;  ///< closed, oriented, one part
   Adjacency adjacency;
-  std::vector<double> distance;         ///< f, m, per vertex
-  std::vector<uint32_t> first, around;  ///< triangles around v: around[first[v] .. first[v + 1])
-  uint32_t root = 0;                    ///< a vertex on the root end
+  std::vector<double> distance;           ///< f, m, per vertex
+  std::vector<uint32_t> first, around;    ///< triangles around v: around[first[v] .. first[v + 1])
+  uint32_t root = 0;                      ///< a vertex on the root end
+  double lost_area = 0, lost_volume = 0;  ///< shares that mending has cost
 
   /// A triangle with the edge (a, b) in either direction; kNone if there is none.
   uint32_t triangle_at_edge(uint32_t a, uint32_t b) const;

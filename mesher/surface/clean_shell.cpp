@@ -9,6 +9,7 @@
 #include "mesher/base/error.h"
 #include "mesher/base/mesh_checks.h"
 #include "mesher/base/weld.h"
+#include "mesher/surface/enclosed_volume.h"
 
 namespace liana {
 namespace {
@@ -152,18 +153,18 @@ bool wind_alike(Mesh& mesh, const Adjacency& adjacency, size_t& flipped) {
 }
 
 /// The edge-connected part with the largest area. Returns the number of parts there were.
-uint32_t keep_largest_part(Mesh& mesh, const Adjacency& adjacency, double& share) {
+uint32_t keep_largest_part(Mesh& mesh, const Adjacency& adjacency, CleanShell& shell) {
   uint32_t count = 0;
   const std::vector<uint32_t> part = connected_parts(adjacency, &count);
   if (count == 1) return 1;
   std::vector<double> area(count, 0);
   for (size_t i = 0; i < part.size(); ++i) area[part[i]] += area_vector(mesh, mesh.triangles[i]).norm();
   const auto largest = static_cast<uint32_t>(std::max_element(area.begin(), area.end()) - area.begin());
-  share = area[largest] / std::accumulate(area.begin(), area.end(), 0.0);
-  Mesh kept;
-  kept.positions = mesh.positions;
+  shell.kept = area[largest] / std::accumulate(area.begin(), area.end(), 0.0);
+  Mesh kept{mesh.positions, {}}, others{mesh.positions, {}};
   for (size_t i = 0; i < part.size(); ++i)
-    if (part[i] == largest) kept.triangles.push_back(mesh.triangles[i]);
+    (part[i] == largest ? kept : others).triangles.push_back(mesh.triangles[i]);
+  shell.lost_volume = enclosed_volume(others);
   mesh = compacted(kept);
   return count;
 }
@@ -197,7 +198,7 @@ CleanShell clean_shell(const Mesh& welded, const std::string& where) {
     shell.notes += fmt::format("+{}-flipped", flipped);
     adjacency = find_adjacency(mesh);
   }
-  const uint32_t parts = keep_largest_part(mesh, adjacency, shell.kept);
+  const uint32_t parts = keep_largest_part(mesh, adjacency, shell);
   if (parts > 1) shell.notes += fmt::format("+largest-of-{}-shells", parts);
   return shell;
 }

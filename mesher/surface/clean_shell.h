@@ -11,6 +11,7 @@ struct CleanShell {
   Mesh mesh;                  ///< an oriented manifold, open or closed, without duplicated or flat triangles
   bool double_sided = false;  ///< faces came in pairs back to back
   double kept = 1;            ///< the part's share of the area of all parts
+  double lost_volume = 0;     ///< m³ in the other parts
   std::string notes;          ///< what was done, each with a leading "+"; empty if nothing
 };
 

@@ -10,6 +10,7 @@
 
 #include "mesher/base/mesh_checks.h"
 #include "mesher/base/weld.h"
+#include "mesher/surface/enclosed_volume.h"
 
 namespace liana {
 namespace {
@@ -74,7 +75,7 @@ size_t close_slits(Mesh& mesh) {
 /// Removes the smallest patch (triangles connected over edges of two) at an edge of three or more triangles:
 /// a wall across a tube is smaller than what it closes off. False if there is no such edge, or if the patch
 /// is no small part of the whole.
-bool drop_patch(Mesh& mesh) {
+bool drop_patch(Mesh& mesh, double& volume) {
   const Adjacency adjacency = find_adjacency(mesh);
   if (adjacency.manifold) return false;
   std::unordered_map<uint64_t, int> uses;
@@ -105,9 +106,11 @@ bool drop_patch(Mesh& mesh) {
   if (smallest == count || area[smallest] > kSmallPatch * std::accumulate(area.begin(), area.end(), 0.0))
     return false;
   size_t kept = 0;
+  Mesh patch{mesh.positions, {}};
   for (size_t i = 0; i < part.size(); ++i)
-    if (part[i] != smallest) mesh.triangles[kept++] = mesh.triangles[i];
+    (part[i] == smallest ? patch.triangles.emplace_back() : mesh.triangles[kept++]) = mesh.triangles[i];
   mesh.triangles.resize(kept);
+  volume += enclosed_volume(patch);
   return true;
 }
 
@@ -167,7 +170,7 @@ size_t part_pinches(Mesh& mesh) {
 }  // namespace
 
 Mended mend(const Mesh& welded) {
-  Mended result{welded, 0, {}};
+  Mended result{welded, 0, 0, {}};
   Mesh& mesh = result.mesh;
   size_t slits = 0, patches = 0;
   for (int pass = 0; pass < 4; ++pass) {
@@ -177,13 +180,13 @@ Mended mend(const Mesh& welded) {
     mesh = weld(mesh);
   }
   const double area = surface_area(mesh);
-  while (patches < 100 && drop_patch(mesh)) ++patches;
+  while (patches < 100 && drop_patch(mesh, result.dropped_volume)) ++patches;
   if (patches) result.dropped = 1 - surface_area(mesh) / area;
   const size_t pinches = part_pinches(mesh);
   if (slits) result.notes += fmt::format("+{}-slits-closed", slits);
   if (patches) result.notes += fmt::format("+{}-inner-or-loose-faces-dropped", patches);
   if (pinches) result.notes += fmt::format("+{}-pinches-parted", pinches);
-  if (result.notes.empty()) return {welded, 0, {}};
+  if (result.notes.empty()) return {welded, 0, 0, {}};
   mesh = compacted(mesh);
   return result;
 }

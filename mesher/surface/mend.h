@@ -9,8 +9,9 @@ namespace liana {
 
 struct Mended {
   Mesh mesh;
-  double dropped = 0;  ///< share of the area that went with fins and inner walls
-  std::string notes;   ///< what was done, each with a leading "+"; empty if nothing was to do
+  double dropped = 0;         ///< share of the area that went with fins and inner walls
+  double dropped_volume = 0;  ///< m³ between those and their rims: none for what is flat
+  std::string notes;          ///< what was done, each with a leading "+"; empty if nothing was to do
 };
 
 /// - Slits: a border vertex next to another border edge (a T-junction, a crack) becomes part of it, if it is

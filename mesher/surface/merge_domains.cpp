@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mesher/base/parallel.h"
+#include "mesher/surface/self_intersection.h"
 #include "mesher/surface/solid_domain.h"
 #include "mesher/surface/solid_union.h"
 
@@ -48,12 +49,13 @@ class Merging {
         part_of_[part.index()] = on == keeper ? part : on;
     }
     if (joined == 0) return plant_.domains[keeper.index()].surface;
-    // A hundredth of a branch's thickness, √(V / ℓ), is far below what the tetrahedra resolve.
+    // Of a branch's thickness, √(V / ℓ): far below what the tetrahedra resolve, but twigs are thinner.
     const double thickness = std::sqrt(solid.volume / solid.length);
-    for (const double share : {0.01, 0.001, 0.0}) {
-      Mesh mesh = all.mesh(share * thickness);
-      if (can_be_solid(keeper, mesh)) return mesh;
-    }
+    for (const bool as_it_is : {true, false})
+      for (const double share : {0.003, 0.001, 0.0001}) {
+        Mesh mesh = all.mesh(share * thickness);
+        if (can_be_solid(keeper, mesh, as_it_is)) return mesh;
+      }
     throw Error(Error::Kind::Input,
                 "the union of '" + plant_.domains[keeper.index()].name + "' cannot be made solid");
   }
@@ -65,8 +67,9 @@ class Merging {
   const std::vector<DomainId>& part_of() const { return part_of_; }
 
  private:
-  /// Whether the bake's own steps accept the union, where its branch grows.
-  bool can_be_solid(DomainId keeper, const Mesh& mesh) const {
+  /// Whether the bake's own steps accept the union, where its branch grows: as it is, or mended.
+  bool can_be_solid(DomainId keeper, const Mesh& mesh, bool as_it_is) const {
+    if (as_it_is && self_intersects(mesh)) return false;
     SegmentedPlant pair;
     Domain domain = plant_.domains[keeper.index()];
     if (domain.parent.valid()) {
@@ -77,8 +80,7 @@ class Merging {
     domain.surface = mesh;
     pair.domains.push_back(std::move(domain));
     try {
-      make_solid(pair, DomainId(pair.domains.size() - 1));
-      return true;
+      return !make_solid(pair, DomainId(pair.domains.size() - 1)).is_beam;
     } catch (const Error& error) {
       if (error.kind != Error::Kind::Input) throw;
       return false;

@@ -28,6 +28,7 @@ constexpr double kBothSides =
     1.6;  // wrapped area over area: a sheet, or a tube wrapped inside and out, has 2
 constexpr double kMostWrapTriangles = 2500;  // expected; more take seconds, and alpha can be coarser
 constexpr double kWholeLength = 0.8;         // of the box's diagonal: the length of what is long and thin
+constexpr double kWide = 0.4;                // second over first spread, standard deviations of the area
 constexpr double kLongAndThin = 6;           // π extent² / area: length over diameter of a tube
 constexpr double kPlane = 1e-3;              // thinnest over longest extent (standard deviations)
 
@@ -48,6 +49,21 @@ bool is_plane(const Mesh& mesh) {
   return !(axes[0] > kPlane * kPlane * axes[2]);
 }
 
+/// Spread in two directions at least, as a crown is, and a branch is not.
+bool is_wide(const Mesh& mesh) {
+  double area = 0;
+  Vec3 first = Vec3::Zero();
+  Mat3 second = Mat3::Zero();
+  for (const Triangle& t : mesh.triangles) {
+    const double a = area_vector(mesh, t).norm();
+    const Vec3 p = (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) / 3;
+    area += a, first += a * p, second += a * p * p.transpose();
+  }
+  const Mat3 spread = second / area - first * first.transpose() / (area * area);
+  const Vec3 axes = Eigen::SelfAdjointEigenSolver<Mat3>(spread, Eigen::EigenvaluesOnly).eigenvalues();
+  return axes[1] > kWide * kWide * axes[2];
+}
+
 bool has_border(const Mesh& mesh) {
   for (const auto& across : find_adjacency(mesh).across)
     for (const uint32_t other : across)
@@ -61,28 +77,43 @@ class Ladder {
       : domain_(plant.domains[id.index()]), attachment_(plant, id) {}
 
   SolidDomain climb() {
-    if (auto solid = try_surface(domain_.surface, "")) return *solid;
+    if (auto solid = try_surface(domain_.surface, "", {})) return *solid;
     const Error reason = *failure_;
     const Mended mended = mend(domain_.surface);
     if (!mended.notes.empty())
-      if (auto solid = try_surface(mended.mesh, mended.notes)) return *solid;
-    if (auto solid = untangle(mended.notes)) return *solid;
+      if (auto solid = try_surface(mended.mesh, mended.notes, {mended.dropped, mended.dropped_volume}))
+        return *solid;
+    if (auto solid = untangle(mended)) return *solid;
     if (auto solid = wrap(mended.mesh)) return *solid;
     auto beam = beam_shape(domain_, attachment_);
     if (!beam || is_short(*beam)) throw reason;
-    beam->route = "beam";
+    // A wide sheet has no centreline to speak of, and a folded one is no tube.
+    beam->route = domain_.kind == DomainKind::Leaf ? "rough-beam" : "beam";
     return *beam;
   }
 
  private:
-  /// A branch whose root was found halfway up, or most of which is lost.
+  /// A branch whose root was found halfway up, or most of which is lost. A crown may be wider than it is
+  /// long: of that only what lies far from the root counts.
   bool is_short(const SolidDomain& solid) const {
-    const double size = extent(domain_.surface);
-    return domain_.kind == DomainKind::Branch && solid.length < kWholeLength * size &&
-           kPi * size * size > kLongAndThin * surface_area(domain_.surface);
+    const Mesh& whole = domain_.surface;
+    const double size = extent(whole);
+    if (domain_.kind != DomainKind::Branch || solid.length >= kWholeLength * size ||
+        kPi * size * size <= kLongAndThin * surface_area(whole))
+      return false;
+    if (!is_wide(whole)) return true;
+    double reach = 0;
+    for (const Triangle& t : whole.triangles)
+      for (const uint32_t v : t) reach = std::max(reach, (whole.positions[v] - solid.root).norm());
+    return solid.length < kWholeLength * reach;
   }
 
-  std::optional<SolidDomain> try_surface(const Mesh& surface, const std::string& notes) {
+  /// Share of the area, m³.
+  struct Loss {
+    double area = 0, volume = 0;
+  };
+
+  std::optional<SolidDomain> try_surface(const Mesh& surface, const std::string& notes, const Loss& loss) {
     attempt_ = {};
     try {
       SolidDomain solid = attempt_solid(domain_, surface, attachment_, attempt_);
@@ -100,6 +131,8 @@ class Ladder {
         return {};
       }
       solid.route += notes;
+      solid.lost_area = 1 - (1 - loss.area) * attempt_.kept;
+      solid.lost_volume = (loss.volume + attempt_.lost_volume) / solid.volume;
       return solid;
     } catch (const Error& error) {
       if (error.kind != Error::Kind::Input) throw;
@@ -108,12 +141,16 @@ class Ladder {
     }
   }
 
-  std::optional<SolidDomain> untangle(const std::string& notes) {
+  std::optional<SolidDomain> untangle(const Mended& mended) {
     if (attempt_.crossing.triangles.empty()) return {};
     const double volume = signed_volume(attempt_.crossing);
     const std::optional<Mesh> mesh = untangled(attempt_.crossing);
-    if (!mesh || !(std::abs(signed_volume(*mesh) / volume - 1) < kUntangled)) return {};
-    return try_surface(*mesh, notes + "+untangled");
+    if (!mesh) return {};
+    const double changed = std::abs(signed_volume(*mesh) - volume);
+    if (!(changed < kUntangled * std::abs(volume))) return {};
+    const double kept = attempt_.kept, others = attempt_.lost_volume;
+    return try_surface(*mesh, mended.notes + "+untangled",
+                       {1 - (1 - mended.dropped) * kept, mended.dropped_volume + others + changed});
   }
 
   /// Alpha grows if the wrap would be too large or enters the surface by its openings. A sheet is none of its
@@ -137,7 +174,7 @@ class Ladder {
         continue;
       const Mesh pulled = pull_back(*wrapped, mesh, 3 * offset);
       if (!self_intersects(pulled)) wrapped = pulled;
-      if (auto solid = try_surface(*wrapped, "+alpha-wrapped")) return solid;
+      if (auto solid = try_surface(*wrapped, "+alpha-wrapped", {})) return solid;
     }
     return {};
   }

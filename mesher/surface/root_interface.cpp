@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numeric>
 
 #include "mesher/surface/cap.h"
@@ -93,6 +94,39 @@ bool is_in_the_side(const Mesh& mesh, const std::vector<uint32_t>& loop) {
   return from_tip[opposite] > 1.2 * from_loop[tip];
 }
 
+constexpr double kRootStrip = 0.04;  // of a sheet's length
+
+/// Directions a sheet may be long in, from base to tip: both ways along its longest principal axis, or along
+/// the sides of one that is about as wide as long.
+std::vector<Vec3> long_axes(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loops) {
+  double area = 0;
+  Vec3 first = Vec3::Zero();
+  Mat3 second = Mat3::Zero();  // over the area: by the three middles of the edges, exact for triangles
+  const Vec3 origin = mesh.positions[loops[0][0]];
+  for (const Triangle& t : mesh.triangles) {
+    const double a = area_vector(mesh, t).norm();
+    area += a;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 p = (mesh.positions[t[k]] + mesh.positions[t[(k + 1) % 3]]) / 2 - origin;
+      first += a / 3 * p, second += a / 3 * p * p.transpose();
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> spread(second / area - first * first.transpose() / (area * area));
+  Vec3 u = spread.eigenvectors().col(2), v = spread.eigenvectors().col(1);
+  // Square roots 1.15: a card of 1 by 1.15, below which the sides say more than the spread.
+  if (spread.eigenvalues()[2] > 1.15 * 1.15 * spread.eigenvalues()[1]) return {u, -u};
+  std::complex<double> sides = 0;  // turns by four times the angle: the same for all four sides of a card
+  for (const std::vector<uint32_t>& loop : loops)
+    for (size_t i = 0; i < loop.size(); ++i) {
+      const Vec3 edge = mesh.positions[loop[(i + 1) % loop.size()]] - mesh.positions[loop[i]];
+      const std::complex<double> e(edge.dot(u), edge.dot(v));
+      if (std::abs(e) > 0) sides += std::pow(e / std::abs(e), 4) * std::abs(e);
+    }
+  const std::complex<double> turn = std::polar(1., std::arg(sides) / 4);
+  const Vec3 x = turn.real() * u + turn.imag() * v, y = turn.real() * v - turn.imag() * u;
+  return {x, -x, y, -y};
+}
+
 }  // namespace
 
 size_t root_loop(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loops,
@@ -166,61 +200,46 @@ std::vector<uint8_t> root_end(const Mesh& mesh, const Adjacency& adjacency, cons
   return marked;
 }
 
-std::vector<std::vector<uint8_t>> root_edges(const Mesh& mesh,
-                                             const std::vector<std::vector<uint32_t>>& loops,
-                                             const Attachment& attachment) {
+SheetRoot sheet_root(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loops,
+                     const Attachment& attachment) {
   std::vector<uint32_t> border;
   for (const std::vector<uint32_t>& loop : loops) border.insert(border.end(), loop.begin(), loop.end());
-  // A blade may touch its twig anywhere; its base is at the end of its long axis and at the parent.
-  Vec3 near = Vec3::Zero(), far = Vec3::Zero();
-  double best = -std::numeric_limits<double>::infinity();
-  for (const uint32_t v : border) {
-    const Vec3& p = mesh.positions[v];
-    const auto beyond = std::max_element(border.begin(), border.end(), [&](uint32_t a, uint32_t b) {
-      return (mesh.positions[a] - p).squaredNorm() < (mesh.positions[b] - p).squaredNorm();
-    });
-    const double score = (mesh.positions[*beyond] - p).norm() - 2 * attachment.height(p);
-    if (score <= best) continue;
-    best = score;
-    near = p;
-    far = mesh.positions[*beyond];
-  }
-  const double length = (far - near).norm();
-  const Vec3 axis = (far - near) / length;
-  const auto along = [&](uint32_t v) { return (mesh.positions[v] - near).dot(axis); };
-
-  double base = 0;
-  for (const uint32_t v : border)
-    if ((mesh.positions[v] - near).norm() < length / 4) base = std::min(base, along(v));
-  std::vector<std::vector<uint8_t>> marked;
-  bool any = false;
-  const auto mark = [&](auto is_root) {
-    marked.clear();
-    for (const std::vector<uint32_t>& loop : loops) {
-      marked.emplace_back();
-      for (size_t i = 0; i < loop.size(); ++i) {
-        marked.back().push_back(is_root(loop[i], loop[(i + 1) % loop.size()]));
-        any = any || marked.back().back();
-      }
+  // A blade may touch its twig anywhere; its base is at an end of its long axis and at the parent.
+  Vec3 axis = Vec3::Zero();
+  double best = -std::numeric_limits<double>::infinity(), base = 0, length = 0;
+  for (const Vec3& candidate : long_axes(mesh, loops)) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const uint32_t v : border) {
+      low = std::min(low, mesh.positions[v].dot(candidate));
+      high = std::max(high, mesh.positions[v].dot(candidate));
     }
-  };
-  mark([&](uint32_t a, uint32_t b) { return std::max(along(a), along(b)) <= base + 0.04 * length; });
-  if (!any) {
-    const uint32_t point = *std::min_element(border.begin(), border.end(),
-                                             [&](uint32_t a, uint32_t b) { return along(a) < along(b); });
-    // A wide card's base edge leans against the diagonal: it rises less than its sides.
-    const auto rise = [&](uint32_t a, uint32_t b) { return std::abs(along(a) - along(b)) / length; };
-    double least = 1;
-    for (const std::vector<uint32_t>& loop : loops)
-      for (size_t i = 0; i < loop.size(); ++i) {
-        const uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
-        if (a == point || b == point) least = std::min(least, rise(a, b));
-      }
-    mark([&](uint32_t a, uint32_t b) {
-      return (a == point || b == point) && (least > 0.3 || rise(a, b) <= 1.2 * least);
-    });
+    double height = 0;
+    int count = 0;
+    for (const uint32_t v : border)
+      if (mesh.positions[v].dot(candidate) <= low + kRootStrip * (high - low))
+        height += attachment.height(mesh.positions[v]), ++count;
+    if (const double score = high - low - 2 * height / count; score > best)
+      best = score, axis = candidate, base = low, length = high - low;
   }
-  return marked;
+  const auto along = [&](uint32_t v) { return mesh.positions[v].dot(axis) - base; };
+
+  SheetRoot root;
+  root.strip = kRootStrip * length;
+  bool any = false;
+  for (const std::vector<uint32_t>& loop : loops) {
+    root.edges.emplace_back();
+    for (size_t i = 0; i < loop.size(); ++i) {
+      const uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
+      const double edge = (mesh.positions[a] - mesh.positions[b]).norm();  // the sides rise by more than half
+      root.edges.back().push_back(std::max(along(a), along(b)) <= root.strip &&
+                                  std::abs(along(a) - along(b)) <= 0.7 * edge);
+      any = any || root.edges.back().back();
+    }
+  }
+  if (!any)
+    root.point = *std::min_element(border.begin(), border.end(),
+                                   [&](uint32_t a, uint32_t b) { return along(a) < along(b); });
+  return root;
 }
 
 }  // namespace liana

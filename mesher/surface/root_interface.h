@@ -16,10 +16,16 @@ size_t root_loop(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loo
 /// farthest from the other end that look away from it, up to the first crease.
 std::vector<uint8_t> root_end(const Mesh& mesh, const Adjacency& adjacency, const Attachment& attachment);
 
-/// Marks, in the order of the loops, the border edges of a sheet that are its root: the strip nearest the
-/// attachment, within 4 % of the sheet's length; at a pointed base the two edges at the point.
-std::vector<std::vector<uint8_t>> root_edges(const Mesh& mesh,
-                                             const std::vector<std::vector<uint32_t>>& loops,
-                                             const Attachment& attachment);
+/// The root of a sheet.
+struct SheetRoot {
+  std::vector<std::vector<uint8_t>> edges;  ///< in the order of the loops: border edges that are held
+  uint32_t point = Id<Mesh>::kNone;         ///< the vertex a pointed base ends in; then no edge is marked
+  double strip = 0;                         ///< m: what is nearer to the point is held
+};
+
+/// The base of a sheet is the end of its long axis that is nearest to the attachment: the edges across it
+/// within 4 % of the sheet's length, or a point.
+SheetRoot sheet_root(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loops,
+                     const Attachment& attachment);
 
 }  // namespace liana

@@ -297,7 +297,8 @@ class Partition {
     }
     std::vector<SkinPiece> result;
     for (size_t p = 0; p < surfaces.size(); ++p)
-      result.push_back({local(all.positions, surfaces[p].triangles), parent[p] < 0 ? -1 : place[parent[p]]});
+      result.push_back(
+          {local(all.positions, surfaces[p].triangles), parent[p] < 0 ? -1 : place[parent[p]], 0, 0});
     return result;
   }
 
@@ -337,14 +338,16 @@ bool is_branching_skin(const Mesh& shell) {
 
 std::vector<SkinPiece> cut_skin(const Mesh& shell) {
   SkinField field;
-  if (!make_skin_field(shell, field)) return {{compacted(shell), -1}};
+  if (!make_skin_field(shell, field)) return {{compacted(shell), -1, 0, 0}};
   std::vector<Cut> cuts;
   CutFinder finder(field);
   for (const BranchAxis& axis : find_branch_axes(field)) {
     if (axis.parent < 0) continue;
     if (auto loop = finder.find(axis)) cuts.push_back({std::move(*loop), axis.diameter});
   }
-  return Partition(field, cuts).run();
+  std::vector<SkinPiece> pieces = Partition(field, cuts).run();
+  pieces[0].lost_area = field.lost_area, pieces[0].lost_volume = field.lost_volume;
+  return pieces;
 }
 
 }  // namespace liana

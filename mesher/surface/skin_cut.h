@@ -10,6 +10,8 @@ namespace liana {
 struct SkinPiece {
   Mesh surface;  ///< closed, oriented outward, without the vertices of other pieces
   int parent;    ///< index of the piece it was cut from; -1: the root piece, which is the first
+  /// Of the root piece: what mending the skin has cost, shares of its area and volume.
+  double lost_area = 0, lost_volume = 0;
 };
 
 /// True if a surface is a tube with side branches: cut_skin() would return more than one piece. Open ends

@@ -8,8 +8,9 @@ namespace liana {
 
 /// What a try found out, whether it succeeded or not.
 struct Attempt {
-  double kept = 1;        ///< share of the surface's area in the part that was taken
-  bool is_sheet = false;  ///< it was taken for a sheet
+  double kept = 1;         ///< share of the surface's area in the part that was taken
+  double lost_volume = 0;  ///< m³ in the other parts
+  bool is_sheet = false;   ///< it was taken for a sheet
   Mesh crossing;  ///< closed and oriented, but passes through itself; empty if that was not the reason
 };
 

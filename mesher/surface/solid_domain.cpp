@@ -6,12 +6,14 @@
 
 #include "mesher/base/error.h"
 #include "mesher/base/mesh_checks.h"
+#include "mesher/base/weld.h"
 #include "mesher/surface/attachment.h"
 #include "mesher/surface/cap.h"
 #include "mesher/surface/centreline.h"
 #include "mesher/surface/clean_shell.h"
 #include "mesher/surface/geodesic.h"
 #include "mesher/surface/grade.h"
+#include "mesher/surface/refine_sheet.h"
 #include "mesher/surface/root_interface.h"
 #include "mesher/surface/self_intersection.h"
 #include "mesher/surface/sheet.h"
@@ -74,27 +76,60 @@ Rooted body(const Mesh& shell, const Adjacency& adjacency, const std::vector<std
   return result;
 }
 
-/// Finds the root on the sheet's border, grades the sheet and gives it its thickness.
+/// Directed border edges.
+using Edges = std::set<std::pair<uint32_t, uint32_t>>;
+
+/// The edges at the root of the sheet; a pointed base is cut where its root ends.
+Edges root_edges(Mesh& mesh, std::vector<std::vector<uint32_t>> loops, const Attachment& attachment) {
+  const SheetRoot found = sheet_root(mesh, loops, attachment);
+  const bool pointed = found.point != Id<Mesh>::kNone;
+  const Vec3 point = pointed ? mesh.positions[found.point] : Vec3::Zero();
+  constexpr double kSnap = 0.25;
+  if (pointed) {
+    std::vector<uint8_t> source(mesh.positions.size(), 0);
+    source[found.point] = 1;
+    MarkedSurface cut{mesh, geodesic_distance(mesh, source), std::vector<uint8_t>(mesh.triangles.size(), 0)};
+    cut_along(cut, found.strip, kSnap * found.strip);
+    mesh = compacted(cut.mesh);
+    loops = border_loops(mesh, find_adjacency(mesh));
+  }
+  Edges root;
+  for (size_t l = 0; l < loops.size(); ++l)
+    for (size_t i = 0; i < loops[l].size(); ++i) {
+      const uint32_t a = loops[l][i], b = loops[l][(i + 1) % loops[l].size()];
+      const auto near = [&](uint32_t v) {
+        return (mesh.positions[v] - point).norm() < (1 + kSnap) * found.strip;
+      };
+      if (pointed ? near(a) && near(b) : found.edges[l][i]) root.insert({a, b});
+    }
+  return root;
+}
+
+/// Finds the root on the sheet's border, grades and refines the sheet and gives it its thickness.
 Rooted sheet(const Mesh& shell, const std::vector<std::vector<uint32_t>>& loops, double thickness,
              const Attachment& attachment) {
   Rooted result;
   result.route = "sheet-extruded";
-  const std::vector<std::vector<uint8_t>> marked = root_edges(shell, loops, attachment);
-  std::vector<uint8_t> source(shell.positions.size(), 0);
-  std::set<std::pair<uint32_t, uint32_t>> root;  // border edges; cuts never touch them, their distance is 0
-  for (size_t l = 0; l < loops.size(); ++l)
-    for (size_t i = 0; i < loops[l].size(); ++i) {
-      const uint32_t a = loops[l][i], b = loops[l][(i + 1) % loops[l].size()];
-      if (!marked[l][i]) continue;
-      source[a] = source[b] = 1;
-      root.insert({a, b});
-      result.diameter += (shell.positions[a] - shell.positions[b]).norm();
-    }
-  MarkedSurface graded{shell, geodesic_distance(shell, source),
-                       std::vector<uint8_t>(shell.triangles.size(), 0)};
-  result.length = *std::max_element(graded.distance.begin(), graded.distance.end());
+  MarkedSurface graded{shell, {}, {}};
+  const Edges root = root_edges(graded.mesh, loops, attachment);
+  std::vector<uint8_t> source(graded.mesh.positions.size(), 0);
+  for (const auto& [a, b] : root) {
+    source[a] = source[b] = 1;
+    result.diameter += (graded.mesh.positions[a] - graded.mesh.positions[b]).norm();
+  }
+  graded.distance = geodesic_distance(graded.mesh, source);
+  graded.is_root.assign(graded.mesh.triangles.size(), 0);
+  const auto farthest = [&] { return *std::max_element(graded.distance.begin(), graded.distance.end()); };
+  const int bisected = refine_sheet(graded, farthest(), 2 * thickness);
+  if (bisected) {  // the middle of two vertices at distance 0 has distance 0
+    source.clear();
+    for (const double d : graded.distance) source.push_back(d == 0);
+    graded.distance = geodesic_distance(graded.mesh, source);
+  }
+  result.length = farthest();
   if (const int lines = grade(graded, result.length, result.diameter))
     result.route += fmt::format("+{}-rings", lines);
+  if (bisected) result.route += fmt::format("+{}-edges-bisected", bisected);
 
   const Adjacency adjacency = find_adjacency(graded.mesh);
   const std::vector<std::vector<uint32_t>> border = border_loops(graded.mesh, adjacency);
@@ -103,10 +138,12 @@ Rooted sheet(const Mesh& shell, const std::vector<std::vector<uint32_t>>& loops,
   result.surface.distance.insert(result.surface.distance.end(), graded.distance.begin(),
                                  graded.distance.end());
   result.surface.is_root.assign(2 * graded.mesh.triangles.size(), 0);
+  // Where the border has distance 0 it is the root: bisection has given its middles 0, too.
   for (const std::vector<uint32_t>& loop : border)
     for (size_t i = 0; i < loop.size(); ++i)
-      result.surface.is_root.insert(result.surface.is_root.end(), 2,
-                                    root.contains({loop[i], loop[(i + 1) % loop.size()]}));
+      result.surface.is_root.insert(
+          result.surface.is_root.end(), 2,
+          graded.distance[loop[i]] == 0 && graded.distance[loop[(i + 1) % loop.size()]] == 0);
   return result;
 }
 
@@ -135,6 +172,7 @@ SolidDomain attempt_solid(const Domain& domain, const Mesh& surface, const Attac
 
   CleanShell shell = clean_shell(surface, where);
   attempt.kept = shell.kept;
+  attempt.lost_volume = shell.lost_volume;
   const Adjacency adjacency = find_adjacency(shell.mesh);
   const std::vector<std::vector<uint32_t>> loops = border_loops(shell.mesh, adjacency);
   const bool flat = !loops.empty() && is_sheet(shell.mesh, loops);

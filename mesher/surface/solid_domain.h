@@ -28,6 +28,9 @@ struct SolidDomain {
   /// No solid could be made: the centreline's sections are all there is, and the surface is a tube through
   /// them that may pass through itself. Its modes are a beam's (modal/beam_mode.h).
   bool is_beam = false;
+  /// What mending cost: shares of the modelled area, and of the volume (either way where it was untangled).
+  /// Not of wraps and beams, whose routes say what they are.
+  double lost_area = 0, lost_volume = 0;
 };
 
 /// The repair ladder, cheapest rung first; each leaves its name in `route`:
@@ -37,6 +40,7 @@ struct SolidDomain {
 ///   "+alpha-wrapped"    a new surface around everything (alpha_wrap.h), pulled back onto the old one where
 ///                       they are near: frequencies within 3 %
 ///   "beam"              a beam through the sections (beam_shape.h): frequencies within 3 %
+///   "rough-beam"        the same of a leaf: may be far off where it is wide or folded
 /// Throws Error{Input} naming the domain and the reason when it has no recoverable shape.
 SolidDomain make_solid(const SegmentedPlant& plant, DomainId domain);
 

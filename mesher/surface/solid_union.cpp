@@ -5,7 +5,8 @@
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
 #include <CGAL/Polygon_mesh_processing/corefinement.h>
 #include <CGAL/Surface_mesh.h>
-#include <CGAL/boost/graph/Euler_operations.h>
+
+#include "mesher/surface/thin_triangles.h"
 
 namespace liana {
 namespace {
@@ -31,19 +32,6 @@ Vec3 rounded(const Kernel::Point_3& p) {
   return {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
 }
 
-/// Where surfaces cross, edges are as short as chance has it.
-void join_short_edges(ExactMesh& mesh, double least) {
-  std::vector<ExactMesh::Edge_index> edges(mesh.edges().begin(), mesh.edges().end());
-  for (const auto edge : edges) {
-    if (mesh.is_removed(edge)) continue;
-    const auto half = mesh.halfedge(edge);
-    const auto& from = mesh.point(mesh.source(half));
-    const auto& to = mesh.point(mesh.target(half));
-    if ((rounded(from) - rounded(to)).norm() >= least) continue;
-    if (CGAL::Euler::does_satisfy_link_condition(edge, mesh)) CGAL::Euler::collapse_edge(edge, mesh);
-  }
-}
-
 }  // namespace
 
 struct SolidUnion::Surface {
@@ -63,10 +51,8 @@ bool SolidUnion::add(const Mesh& solid) {
   return true;
 }
 
-Mesh SolidUnion::mesh(double least_edge) const {
-  ExactMesh joined = surface_->mesh;
-  join_short_edges(joined, least_edge);
-  joined.collect_garbage();
+Mesh SolidUnion::mesh(double least) const {
+  const ExactMesh& joined = surface_->mesh;
   Mesh result;
   for (const auto vertex : joined.vertices()) result.positions.push_back(rounded(joined.point(vertex)));
   for (const auto face : joined.faces()) {
@@ -76,7 +62,7 @@ Mesh SolidUnion::mesh(double least_edge) const {
       triangle[corner++] = static_cast<uint32_t>(vertex.idx());
     result.triangles.push_back(triangle);
   }
-  return result;
+  return without_thin_triangles(result, least);
 }
 
 }  // namespace liana

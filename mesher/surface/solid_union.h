@@ -16,9 +16,9 @@ class SolidUnion {
 
   /// False, and nothing is changed, when the two do not share a volume or their union is no manifold.
   bool add(const Mesh& solid);
-  /// Rounded to doubles; vertices nearer to each other than `least_edge` (m) are joined where that leaves a
-  /// valid surface.
-  Mesh mesh(double least_edge) const;
+  /// Rounded to doubles, without edges and triangles thinner than `least` (m) where that leaves a valid
+  /// surface: see thin_triangles.h.
+  Mesh mesh(double least) const;
 
  private:
   struct Surface;

@@ -86,7 +86,6 @@ int bake(BakeRun run) {
   SegmentedPlant plant;
   BakeResult result;
   std::optional<BakeCache> cache;
-  VtuMesh tets;
   double read_seconds = 0, cache_seconds = 0;
   {
     TerminalProgress progress;  // from here on Ctrl-C is ours
@@ -101,7 +100,6 @@ int bake(BakeRun run) {
     result = bake_plant(plant, species.law, run.options, progress);
     result.notes.insert(result.notes.begin(), plant.notes.begin(), plant.notes.end());
     progress.throw_if_cancelled();
-    if (!run.vtu.empty()) tets = domains_vtu(result.bake, baked_solids(plant, result.bake));
   }
   result.bake.species_hash = species.hash;
   result.seconds.read = read_seconds;
@@ -109,12 +107,17 @@ int bake(BakeRun run) {
   if (cache) cache_seconds += timed([&] { save_cache(*cache, result.notes); });
   result.seconds.cache = cache_seconds;
   result.seconds.total = watch.seconds();
-  if (!run.vtu.empty()) write_vtu(tets, run.vtu);
   write_beside(run, plant, result);
   print_result(run, species.law.species, result);
   if (cache)
     fmt::print("cache: {} found, {} new ({})\n", cache->hits(), cache->misses(), cache->file().string());
   for (const std::string& note : result.notes) fmt::print("note: {}\n", note);
+  if (!run.vtu.empty()) {  // last: it takes as long again, and whatever becomes of it, the bake is there
+    TerminalProgress progress;
+    const VtuMesh tets = domains_vtu(result.bake, baked_solids(plant, result.bake));
+    progress.throw_if_cancelled();
+    write_vtu(tets, run.vtu);
+  }
   return result.bake.failed.empty() ? kSuccess : kPartial;
 }
 

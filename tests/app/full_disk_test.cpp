@@ -96,5 +96,27 @@ TEST(DevFull, WordsThatCannotBePrintedAreAnError) {
   EXPECT_THAT(read_file(folder / "err"), HasSubstr("cannot be written"));
 }
 
+TEST(DevFull, VtuThatCannotBeWrittenLosesNoBake) {
+  const ScratchFolder folder;
+  write_instanced_plant(make_branch_hierarchy(3), folder / "plant.glb");
+  const std::vector<std::string> bake = {"bake", "plant.glb", "--species", "apple",
+                                         "-o",   "a.bake",    "--no-cache"};
+  const auto with = [&](const std::string& vtu) {
+    std::vector<std::string> all = bake;
+    all.insert(all.end(), {"--vtu", vtu});
+    return run_liana(all, folder.path());
+  };
+  const ProgramResult late = with("/dev/full");
+  EXPECT_EQ(late.exit_code, 1);
+  EXPECT_THAT(late.err, HasSubstr("has space"));
+  EXPECT_TRUE(fs::exists(folder / "a.bake"));
+  EXPECT_EQ(run_liana({"inspect", "a.bake"}, folder.path()).exit_code, 0);
+  fs::remove(folder / "a.bake");
+  const ProgramResult early = with("missing/a.vtu");
+  EXPECT_EQ(early.exit_code, 1);
+  EXPECT_THAT(early.err, HasSubstr("missing"));
+  EXPECT_FALSE(fs::exists(folder / "a.bake"));
+}
+
 }  // namespace
 }  // namespace liana

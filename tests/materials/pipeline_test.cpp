@@ -10,6 +10,7 @@
 #include "materials/pipeline/bake_plant.h"
 #include "materials/pipeline/baked_solids.h"
 #include "mesher/surface/solid_domain.h"
+#include "tests/support/damage.h"
 #include "tests/support/shapes.h"
 
 namespace liana {
@@ -94,8 +95,9 @@ TEST(BakePlant, TaperedMaterialSwingsAtTheLawsFrequencyAfterReading) {
   const BakedDomain& domain = read.domains[0];
   EXPECT_EQ(read.law.group(domain.group).taper, law.groups["level0"].taper);
   EXPECT_GT(std::abs(domain.default_frequency / bake(plant).bake.domains[0].default_frequency - 1), 0.05);
-  EXPECT_DOUBLE_EQ(domain.stiffness_scaling, domain.material.mass_scaling *
-                                                 std::pow(domain.material.frequency / domain.default_frequency, 2));
+  EXPECT_DOUBLE_EQ(
+      domain.stiffness_scaling,
+      domain.material.mass_scaling * std::pow(domain.material.frequency / domain.default_frequency, 2));
 
   const std::vector<UnitedPart> parts = baked_solids(plant, read);
   ASSERT_EQ(parts[0].scaling.size(), parts[0].mesh.tets.size());
@@ -252,6 +254,15 @@ TEST(BakePlant, NotesGroupsThatBorrowALaw) {
   const BakeResult result = bake(make_small_plant());  // its twigs are of level2, which the law lacks
   ASSERT_EQ(result.notes.size(), 1u);
   EXPECT_NE(result.notes[0].find("level2"), std::string::npos);
+}
+
+TEST(BakePlant, NotesWhatMendingCost) {
+  SegmentedPlant plant = plant_of(make_prism(6, 1, 0.1).mesh);
+  EXPECT_TRUE(bake(plant).notes.empty());
+  add_fin(plant.domains[0].surface, 0, 0.02);
+  const BakeResult result = bake(plant);
+  ASSERT_EQ(result.notes.size(), 1u);
+  EXPECT_TRUE(result.notes[0].starts_with("1 domain lost something when mended: 'trunk'")) << result.notes[0];
 }
 
 // The models differ in ν alone; what Eq. 10 and 15 make of it is the same.

@@ -75,6 +75,37 @@ TEST(Mend, KeepsTheVolumeOfWhatItMends) {
   EXPECT_NEAR(signed_volume(mended.mesh) / signed_volume(whole), 1, 1e-12);
 }
 
+TEST(RepairLadder, SaysWhatItCost) {
+  const MarkedMesh stem = make_prism(6, 1, 0.1);
+  const double area = surface_area(stem.mesh), volume = signed_volume(stem.mesh);
+  const auto solid_of = [](const Mesh& mesh) {
+    SegmentedPlant plant;
+    plant.domains.push_back({.name = "stem", .parent = {}, .group = "g", .surface = mesh});
+    return make_solid(plant, DomainId(0));
+  };
+  const SolidDomain sound = solid_of(stem.mesh);
+  EXPECT_NEAR(sound.lost_area, 0, 1e-12);
+  EXPECT_NEAR(sound.lost_volume, 0, 1e-12);
+
+  Mesh with_fin = stem.mesh;
+  add_fin(with_fin, 0, 0.05);
+  const double fin = surface_area(with_fin) - area;
+  const SolidDomain finless = solid_of(with_fin);
+  EXPECT_NEAR(finless.lost_area, fin / (area + fin), 1e-9) << finless.route;
+  EXPECT_NEAR(finless.lost_volume, 0, 1e-9);
+
+  Mesh with_crumb = stem.mesh;  // loose beside it
+  const Mesh crumb = make_box(Vec3(0.1, 0.5, 0), Vec3(0.02, 0.02, 0.02));
+  for (const Triangle& t : crumb.triangles) {
+    const auto base = static_cast<uint32_t>(stem.mesh.positions.size());
+    with_crumb.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+  }
+  with_crumb.positions.insert(with_crumb.positions.end(), crumb.positions.begin(), crumb.positions.end());
+  const SolidDomain crumbless = solid_of(with_crumb);
+  EXPECT_NEAR(crumbless.lost_area, 0.0024 / (area + 0.0024), 1e-9) << crumbless.route;
+  EXPECT_NEAR(crumbless.lost_volume, 8e-6 / volume, 1e-9);
+}
+
 TEST(TriangleTree, AgreesWithTheWholeSum) {
   const Mesh mesh = make_tube({.sides = 24, .length = 1, .diameter = 0.2, .bend = 1, .stations = {}}).mesh;
   const TriangleTree tree(mesh);

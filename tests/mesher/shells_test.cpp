@@ -174,6 +174,24 @@ TEST(Segment, FindsTheHierarchyOfTreesMergedByBlender) {
   }
 }
 
+// Flat shading gives every triangle corners of its own, and nothing else tells neighbours from branches that
+// touch.
+TEST(Segment, FindsTheHierarchyOfFlatShadedTrees) {
+  const std::string folder = LIANA_SOURCE_DIR;
+  std::vector<SegmentedPlant> trees = {make_small_plant()};
+  for (const char* file :
+       {"/tests/data/forked_truth.glb", "/data/plants/apple_small.glb", "/data/plants/apple_tree.glb"})
+    trees.push_back(read_plant(folder + file));
+  for (const SegmentedPlant& truth : trees) {
+    TriangleSoup soup;
+    for (const Domain& domain : truth.domains) append(soup, torn(domain.surface));
+    const HierarchyScore result = score(truth, segment(soup, Unit::Metre, truth.name));
+    EXPECT_EQ(result.found, result.domains) << truth.name;
+    EXPECT_GE(double(result.right), 0.98 * double(result.domains))
+        << truth.name << ": " << result.wrong.front();
+  }
+}
+
 SegmentedPlant loaded(const std::string& obj, const LoadOptions& options = {},
                       const std::string& name = "plant.obj") {
   const ScratchFolder folder;

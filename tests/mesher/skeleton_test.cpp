@@ -1,6 +1,7 @@
 // MTG files and plant graphs become branches.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -85,6 +86,23 @@ TEST(Mtg, ReadsChainsInOneCell) {
   EXPECT_EQ(graph.nodes[1].parent, 0);
   EXPECT_EQ(graph.nodes[2].parent, 1);
   EXPECT_TRUE(graph.nodes[2].begins_axis);
+}
+
+// <<S9 stands for all from the one before up to S9, of which the file says no more: its axis goes straight to
+// it.
+TEST(Mtg, RangesGoStraightToTheirEnd) {
+  const PlantGraph graph = parse_mtg(kHead +
+                                         "ENTITY-CODE\tXX\tYY\tZZ\n/P1/A1/S1\t0\t0\t0\n^<<S9\t0\t0\t80\n"
+                                         "^<S10\t0\t0\t90\n^++S3\t30\t0\t100\n^<S11\t0\t0\t110\n",
+                                     "t.mtg");
+  std::vector<int> parents;
+  std::vector<bool> begins;
+  for (const GraphNode& node : graph.nodes)
+    parents.push_back(node.parent), begins.push_back(node.begins_axis);
+  EXPECT_EQ(parents, (std::vector<int>{-1, 0, 1, 2, 2}));
+  EXPECT_EQ(begins, (std::vector<bool>{false, false, false, true, false}));
+  EXPECT_TRUE(std::any_of(graph.notes.begin(), graph.notes.end(),
+                          [](const std::string& note) { return note.starts_with("2 ranges"); }));
 }
 
 TEST(Mtg, NamesLineAndReason) {

@@ -6,6 +6,7 @@
 
 #include "mesher/base/mesh_checks.h"
 #include "mesher/surface/self_intersection.h"
+#include "tests/support/damage.h"
 #include "tests/support/shapes.h"
 #include "tests/support/skins.h"
 
@@ -96,6 +97,19 @@ TEST(SkinCut, LeavesATubeAndALeafWhole) {
     EXPECT_EQ(pieces[0].parent, -1);
     EXPECT_EQ(pieces[0].surface.triangles.size(), whole.triangles.size());
   }
+}
+
+TEST(SkinCut, SaysWhatMendingTheSkinCost) {
+  Mesh skin = make_skin(
+      {{Vec3(0, 0, 0), Vec3(0, 1, 0), 0.05, 0.03}, {Vec3(0, 0.5, 0), Vec3(0.5, 0.8, 0), 0.025, 0.02}}, 0.008);
+  const double area = surface_area(skin);
+  EXPECT_EQ(cut_skin(skin)[0].lost_area, 0);
+  add_fin(skin, 0, 0.02);
+  const double fin = surface_area(skin) - area;
+  const std::vector<SkinPiece> pieces = cut_skin(skin);
+  EXPECT_EQ(pieces.size(), 2u);
+  EXPECT_NEAR(pieces[0].lost_area, fin / (area + fin), 1e-9);
+  EXPECT_NEAR(pieces[0].lost_volume, 0, 1e-9);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "mesher/base/weld.h"
 #include "mesher/io/plant_file.h"
 #include "mesher/surface/self_intersection.h"
+#include "tests/support/damage.h"
 #include "tests/support/shapes.h"
 
 namespace liana {
@@ -289,6 +290,57 @@ TEST(SolidDomain, GradesACardOfOneQuadrangle) {
   EXPECT_NEAR(root_area(solid), 0.01 * 3e-4, 1e-12);
 }
 
+TEST(SolidDomain, HoldsACardByItsWholeBaseEdgeHoweverFineItIs) {
+  for (const int fine :
+       {1, 3, 8, 16}) {  // 3 : 1, and as wide as long: which sides are long is for the parent to say
+    for (const double width : {0.1, 0.3}) {
+      const SolidDomain solid =
+          make_solid(on_trunk(transformed(make_leaf_card({.length = 0.3,
+                                                          .width = width,
+                                                          .along = 3 * fine,
+                                                          .across = fine,
+                                                          .bend = 0,
+                                                          .fold = 0,
+                                                          .pointed = false}),
+                                          Affine3(Eigen::Translation3d(0.05, 1, 0) *
+                                                  Eigen::AngleAxisd(-kPi / 2, Vec3::UnitZ()))),
+                              DomainKind::Leaf),
+                     DomainId(1));
+      expect_valid(solid, "card");
+      EXPECT_NEAR(root_area(solid), width * 3e-4, 1e-9) << fine;
+      EXPECT_LT((solid.root - Vec3(0.05, 1, 0)).norm(), 1e-6) << fine;
+      EXPECT_NEAR(solid.length, 0.3, 1e-3);
+    }
+  }
+}
+
+TEST(SolidDomain, HoldsAPointedLeafByTheSamePieceHoweverCoarseItIs) {
+  // A rhombus of 0.1 by 0.04 m, of two triangles and of many; 4 % of its length are held.
+  const auto rhombus = [](int n) {
+    Mesh mesh;
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; j <= n; ++j) {
+        const double u = double(i) / n, v = double(j) / n;
+        mesh.positions.push_back(Vec3(0.02 * (u - v), 0.05 * (u + v), 0));
+      }
+    const auto at = [&](int i, int j) { return static_cast<uint32_t>(i * (n + 1) + j); };
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+        mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+      }
+    return mesh;
+  };
+  const double side = 0.04 * 0.1;
+  for (const int n : {1, 3, 20}) {
+    const SolidDomain solid = solid_of(rhombus(n), DomainKind::Leaf);
+    expect_valid(solid, "rhombus");
+    EXPECT_NEAR(root_area(solid), 2 * side * 3e-4, 0.5 * side * 3e-4) << n;
+    EXPECT_NEAR(solid.length, 0.1 - side, 0.5 * side) << n;
+    EXPECT_NEAR(solid.volume, 0.002 * 3e-4, 1e-11) << n;
+  }
+}
+
 TEST(SolidDomain, FindsALeafsBaseThoughItsBladeTouchesTheTwig) {
   // The base edge is at the trunk's bark (x = 0.05), and the blade leans so that its side runs into the bark.
   const LeafShape shape{.length = 0.06, .width = 0.04, .along = 10, .across = 4, .bend = 0, .fold = 0};
@@ -356,31 +408,11 @@ TEST(SolidDomain, DamagedSurfacesEndInASolidOrInAReason) {
     SegmentedPlant plant = plain;
     const size_t which = random() % plant.domains.size();
     Mesh& mesh = plant.domains[which].surface;
-    for (unsigned harm = 0; harm <= random() % 4; ++harm) {
-      const size_t t = random() % mesh.triangles.size(), v = random() % mesh.positions.size();
-      switch (random() % 7) {
-        case 0:
-          mesh.triangles.erase(mesh.triangles.begin() + static_cast<ptrdiff_t>(t));
-          break;
-        case 1:
-          std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
-          break;
-        case 2:
-          mesh.triangles.push_back(mesh.triangles[t]);
-          break;
-        case 3:
-          mesh.positions[v] = mesh.positions[random() % mesh.positions.size()];
-          break;
-        case 4:
-          mesh.positions[v].x() += 1e-3 * double(random() % 40 + 1);
-          break;
-        case 5:
-          mesh.triangles[t][random() % 3] = static_cast<uint32_t>(v);
-          break;
-        case 6:
-          for (Vec3& p : mesh.positions) p.y() = 0;
-          break;
-      }
+    for (unsigned i = 0; i <= random() % 4; ++i) {
+      if (random() % 7 == 0)
+        for (Vec3& p : mesh.positions) p.y() = 0;
+      else
+        harm(mesh, random);
     }
     mesh = weld(mesh);
     try {

@@ -273,30 +273,35 @@ double shell_frequency(const std::filesystem::path& folder, const Vec3& size, in
   return found.empty() ? 0 : found[0];
 }
 
-// The way of the pipeline: a one-sided card, recognised as a sheet, extruded, filled with tets. The card's
-// own quads bound the error: 2.9 % with 16 x 6, below 2 % with 24 x 8.
-TEST(FeIdentity, LeafCardSwingsAsAShell) {
+// The way of the pipeline: a one-sided card, recognised as a sheet, refined, extruded, filled with tets.
+// However coarse the card, T10 is 0.3 to 1.6 % too stiff (2 % of an absolute scale that S8R misses by 0.1 %).
+TEST(FeIdentity, LeafCardsOfAnyMeshSwingAsAShell) {
   if (std::system("command -v ccx > /dev/null 2>&1") != 0) GTEST_SKIP() << "CalculiX (ccx) is not installed";
   const Vec3 size(0.1, 0.3, 5e-4);
-  const Mesh card = make_leaf_card({.length = size.y(),
-                                    .width = size.x(),
-                                    .along = 24,
-                                    .across = 8,
-                                    .bend = 0,
-                                    .fold = 0,
-                                    .pointed = false});
-  SegmentedPlant plant;
-  Domain domain;
-  domain.name = "leaf", domain.kind = DomainKind::Leaf, domain.surface = card, domain.thickness = size.z();
-  plant.domains.push_back(domain);
-  const SolidDomain solid = make_solid(plant, DomainId(0));
-  EXPECT_NEAR(solid.volume, size.prod(), 1e-3 * size.prod()) << solid.route;
-  const double mine = lowest_modes(tetrahedralize(solid.surface, solid.is_root), {}, {}).frequencies[0];
   const auto folder = scratch("shell");
   const double shell = shell_frequency(folder, size, 24, 8);
   std::filesystem::remove_all(folder);
   ASSERT_GT(shell, 0);
-  EXPECT_NEAR(mine / shell, 1, 0.02) << solid.route;
+  for (const auto& [along, across] : std::vector<std::array<int, 2>>{
+           {1, 1}, {2, 1}, {4, 2}, {5, 3}, {8, 4}, {12, 5}, {10, 10}, {12, 12}, {16, 6}, {20, 5}, {24, 8}}) {
+    SegmentedPlant plant;
+    Domain domain;
+    domain.name = "leaf", domain.kind = DomainKind::Leaf, domain.thickness = size.z();
+    domain.surface = make_leaf_card({.length = size.y(),
+                                     .width = size.x(),
+                                     .along = along,
+                                     .across = across,
+                                     .bend = 0,
+                                     .fold = 0,
+                                     .pointed = false});
+    plant.domains.push_back(domain);
+    const SolidDomain solid = make_solid(plant, DomainId(0));
+    EXPECT_NEAR(solid.volume, size.prod(), 1e-3 * size.prod()) << solid.route;
+    const TetMesh tets = tetrahedralize(solid.surface, solid.is_root);
+    EXPECT_LT(tets.tets.size(), 2000u);
+    EXPECT_NEAR(lowest_modes(tets, {}, {}).frequencies[0] / shell, 1, 0.02)
+        << along << " x " << across << ": " << solid.route;
+  }
 }
 
 }  // namespace

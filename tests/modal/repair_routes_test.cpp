@@ -142,6 +142,54 @@ TEST(RepairRoutes, TheBeamOfABranchIsWithinThreePercentOfItsSolid) {
   }
 }
 
+double first_frequency(const SolidDomain& solid) {
+  Progress silent;
+  return solve_domains(
+             {{&solid.surface, solid.is_root, {}, {}, solid.centreline, solid.volume, solid.is_beam}}, {},
+             {.modes = {}, .tets = {}, .threads = 1}, silent)
+      .domains[0]
+      .frequencies.at(0);
+}
+
+// What a beam can know of a sheet:
+// of flat sheets, 3 % as of branches; of folded ones rough, and said so.
+TEST(RepairRoutes, TheBeamOfASheetIsWithinThreePercentOrSaysThatItIsRough) {
+  LeafShape shape{
+      .length = 0.3, .width = 0.1, .along = 12, .across = 4, .bend = 0, .fold = 0, .pointed = false};
+  std::vector<LeafShape> leaves;
+  for (const double width : {0.01, 0.03, 0.1, 0.2, 0.3}) leaves.push_back(shape), leaves.back().width = width;
+  for (const double width : {0.01, 0.03, 0.1})
+    leaves.push_back(shape), leaves.back().width = width, leaves.back().pointed = true;
+  leaves.push_back(shape), leaves.back().bend = 1, leaves.back().width = 0.03;
+  leaves.push_back(shape), leaves.back().fold = 0.4;
+  leaves.push_back({});
+  int rough = 0;
+  for (const LeafShape& leaf : leaves) {
+    const SolidDomain solid = make_solid(alone(make_leaf_card(leaf), DomainKind::Leaf), DomainId(0));
+    const Solid beam{&solid.surface, solid.is_root, {}, {}, solid.centreline, 0, true};
+    Progress silent;
+    const DomainModes modes =
+        solve_domains({beam}, {}, {.modes = {}, .tets = {}, .threads = 1}, silent).domains[0];
+    const double error = modes.frequencies.at(0) / first_frequency(solid) - 1;
+    std::printf("  sheet %.2f m wide as beam: %+.2f %% %s\n", leaf.width, 100 * error, modes.note.c_str());
+    EXPECT_EQ(modes.note.find("rough") != std::string::npos, leaf.fold > 0);
+    if (leaf.fold > 0)
+      ++rough;
+    else
+      EXPECT_LT(std::abs(error), 0.03) << leaf.width;
+  }
+  EXPECT_EQ(rough, 2);
+
+  // Of bare triangles: a band around more than a full circle passes through itself.
+  const SolidDomain solid = make_solid(
+      alone(
+          make_leaf_card({.length = 0.5, .width = 0.01, .along = 40, .bend = 8, .fold = 0, .pointed = false}),
+          DomainKind::Leaf),
+      DomainId(0));
+  EXPECT_TRUE(solid.is_beam);
+  EXPECT_EQ(solid.route, "rough-beam");
+}
+
 TEST(RepairRoutes, ARingOfOneSideIsRefusedByName) {
   Mesh moebius;  // a ring of 12 quadrangles with half a twist: no inside
   for (int i = 0; i < 12; ++i) {
@@ -165,15 +213,6 @@ TEST(RepairRoutes, ARingOfOneSideIsRefusedByName) {
       EXPECT_NE(std::string(error.what()).find("'it'"), std::string::npos) << error.what();
     }
   }
-}
-
-double first_frequency(const SolidDomain& solid) {
-  Progress silent;
-  return solve_domains(
-             {{&solid.surface, solid.is_root, {}, {}, solid.centreline, solid.volume, solid.is_beam}}, {},
-             {.modes = {}, .tets = {}, .threads = 1}, silent)
-      .domains[0]
-      .frequencies.at(0);
 }
 
 // A second copy of the surface, a five-hundredth of the diameter aside, crosses the first everywhere: only a

@@ -9,6 +9,7 @@ class Chart {
     this.canvas = element("canvas");
     this.keys = element("div", { class: "keys" });
     holder.append(this.canvas, this.keys);
+    this.top = INSET.top;
     this.chosen = -1;
     this.hidden = new Set();
     this.canvas.addEventListener("click", (event) => {
@@ -66,12 +67,13 @@ class Chart {
     const { least, most, log } = this[axis];
     const t = log ? Math.log(value / least) / Math.log(most / least) : (value - least) / (most - least);
     const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
-    return axis === "x" ? INSET.left + t * (width - INSET.left - INSET.right) : height - INSET.bottom - t * (height - INSET.top - INSET.bottom);
+    return axis === "x" ? INSET.left + t * (width - INSET.left - INSET.right) : height - INSET.bottom - t * (height - this.top - INSET.bottom);
   }
 
   draw() {
     if (!this.spec || !this.canvas.clientWidth) return;
     const scale = window.devicePixelRatio || 1, width = this.canvas.clientWidth, height = this.canvas.clientHeight;
+    this.top = Math.max(INSET.top, this.keys.offsetHeight + 6 || 0);  // the keys may take several lines
     this.canvas.width = width * scale;
     this.canvas.height = height * scale;
     const c = (this.context = this.canvas.getContext("2d"));
@@ -79,7 +81,7 @@ class Chart {
     this.drawAxes(c, width, height);
     c.save();
     c.beginPath();
-    c.rect(INSET.left, INSET.top, width - INSET.left - INSET.right, height - INSET.top - INSET.bottom);
+    c.rect(INSET.left, this.top, width - INSET.left - INSET.right, height - this.top - INSET.bottom);
     c.clip();
     for (const series of this.shown()) {
       if (series.bars) this.drawBars(c, series);
@@ -101,7 +103,7 @@ class Chart {
         const at = Math.round(this.place(axis, value)) + 0.5;
         c.strokeStyle = cssColour("--grid");
         c.beginPath();
-        axis === "x" ? (c.moveTo(at, INSET.top), c.lineTo(at, height - INSET.bottom)) : (c.moveTo(INSET.left, at), c.lineTo(width - INSET.right, at));
+        axis === "x" ? (c.moveTo(at, this.top), c.lineTo(at, height - INSET.bottom)) : (c.moveTo(INSET.left, at), c.lineTo(width - INSET.right, at));
         c.stroke();
         c.fillStyle = cssColour("--quiet");
         const text = readable(value);
@@ -122,14 +124,14 @@ class Chart {
       if (axis === "x") c.fillText(label, (INSET.left + width - INSET.right) / 2, height - 4);
       else {
         c.save();
-        c.translate(10, (INSET.top + height - INSET.bottom) / 2);
+        c.translate(10, (this.top + height - INSET.bottom) / 2);
         c.rotate(-Math.PI / 2);
         c.fillText(label, 0, 0);
         c.restore();
       }
     }
     c.strokeStyle = cssColour("--line");
-    c.strokeRect(INSET.left + 0.5, INSET.top + 0.5, width - INSET.left - INSET.right - 1, height - INSET.top - INSET.bottom - 1);
+    c.strokeRect(INSET.left + 0.5, this.top + 0.5, width - INSET.left - INSET.right - 1, height - this.top - INSET.bottom - 1);
   }
 
   drawPoints(c, series) {
