@@ -7,46 +7,20 @@
 #include <fstream>
 #include <sstream>
 
-#include "materials/bake/bake_file.h"
 #include "mesher/base/error.h"
 #include "mesher/base/files.h"
 #include "mesher/base/random.h"
-#include "runtime/sim/collision/box_mesh.h"
 #include "runtime/view/editor_core.h"
-#include "tests/support/climber_scene.h"
-#include "tests/support/scratch_folder.h"
-#include "tests/support/synthetic_bake.h"
+#include "tests/support/busy_scene.h"
 
 namespace liana {
 namespace {
 
 constexpr size_t kSteps = 250;
 
-/// Two trees that break, a climber on a wall, gusts and air particles.
 class Session : public ::testing::Test {
  protected:
-  Session() {
-    Bake bake = test::synthetic_bake({.branches = 4, .twigs = 2, .leaves = 2, .height = 2});
-    bake.law = ivy_like_law();
-    for (auto& [name, group] : bake.law.groups) group.modulus_of_rupture = name == "leaf" ? 1.5e7 : 4e6;
-    for (BakedDomain& domain : bake.domains) domain.default_frequency = domain.material.frequency;
-    write_bake(bake, folder_ / "tree.bake");
-    scene_.plants = {{folder_ / "tree.bake", {-1, 0, 0.5}, 0, 1},
-                     {folder_ / "tree.bake", {1, 0, 0.5}, 0.7, 0.3}};
-    scene_.climbers = {{folder_ / "tree.bake", "", {0, 0, 0.1}, 4, 300, 0, 1, 1, 3, 0.35}};
-    scene_.obstacles = {{"wall", box_mesh({-2, 0, -0.2}, {2, 3, 0}), {1, 1, 1}, false}};
-    scene_.wind.velocity = {3, 0, -1};
-    SphWindParameters air;
-    air.low = {-2.5, 0, 0}, air.high = {2.5, 3, 2.5};
-    EmitterParameters emitter;
-    emitter.center = {-2, 1, 1};
-    emitter.direction = {1, 0, 0};
-    emitter.radius = 0.5;
-    emitter.speed = 8;
-    air.emitters = {emitter};
-    scene_.wind.air = air;
-    scene_.fallen.remove_after = 1;
-  }
+  Session() : scene_(test::busy_scene(folder_)) {}
 
   void leave_only_the_trees() {  // quick
     scene_.wind.air.reset();
