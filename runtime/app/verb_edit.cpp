@@ -5,14 +5,15 @@
 #include <vector>
 
 #include "runtime/app/verbs.h"
-#include "runtime/scene/world.h"
+#include "runtime/app/writable.h"
+#include "runtime/scene/session.h"
 #include "runtime/view/window.h"
 
 namespace liana {
 namespace {
 
 struct EditArguments {
-  std::filesystem::path scene;
+  std::filesystem::path scene, record;
   std::vector<int> size = {1280, 720};
   std::string camera;
   bool paused = false;
@@ -20,6 +21,7 @@ struct EditArguments {
 };
 
 int edit(const EditArguments& arguments) {
+  if (!arguments.record.empty()) require_writable_folder(arguments.record);
   EditorOptions options;
   options.width = arguments.size[0];
   options.height = arguments.size[1];
@@ -29,7 +31,9 @@ int edit(const EditArguments& arguments) {
   World world(scene, arguments.threads);
   options.title = "liana - " + arguments.scene.filename().string();
   if (!options.camera) options.camera = world.camera();
-  return run_editor(world, options);
+  if (arguments.record.empty()) return run_editor(world, options);
+  SessionRecorder recorder(world, arguments.record);
+  return run_editor(recorder, options);
 }
 
 }  // namespace
@@ -45,15 +49,18 @@ void add_edit_verb(CLI::App& app, int& exit_code) {
   verb->add_option(
       "--camera", arguments->camera,
       "Where to look from, as \"pivot 0 1 0 distance 5 azimuth 20 elevation 10\" [what the scene says]");
+  verb->add_option("--record", arguments->record,
+                   "Write all that is done, and the state after every step: liana simulate SCENE --replay FILE");
   verb->add_flag("--paused", arguments->paused, "Start paused");
   verb->add_option("--threads", arguments->threads, "Threads to use [all cores]")->check(CLI::Range(0, 1024));
   verb->footer(
       "Mouse: drag a branch to bend it; drag elsewhere or with the middle button to orbit, with shift or the "
       "right\n"
-      "button to pan; wheel to zoom. Keys: space pause, . step, F frame all, S numbers, Q quit.\n\n"
+      "button to pan; wheel to zoom. Keys: space pause, . step, F frame all, S numbers, X cut, Q quit.\n\n"
       "Examples:\n"
       "  liana edit data/scenes/wall.toml\n"
-      "  liana edit data/scenes/wall.toml --paused --size 1600 900");
+      "  liana edit data/scenes/wall.toml --paused --size 1600 900\n"
+      "  liana edit data/scenes/wall.toml --record pulled.session");
   verb->callback([arguments, &exit_code] { exit_code = edit(*arguments); });
 }
 

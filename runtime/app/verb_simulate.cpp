@@ -13,7 +13,7 @@
 #include "runtime/app/verbs.h"
 #include "runtime/app/writable.h"
 #include "runtime/export/gltf_export.h"
-#include "runtime/scene/world.h"
+#include "runtime/scene/session.h"
 #include "runtime/view/renderer.h"
 #include "runtime/view/video.h"
 
@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct SimulateArguments {
-  fs::path scene, png, mp4, glb, report;
+  fs::path scene, png, mp4, glb, report, record, replay;
   std::optional<double> seconds;
   double video_seconds = 8, sway_seconds = 4;
   std::vector<int> size = {1280, 720}, video_size = {854, 480};
@@ -125,12 +125,20 @@ void print_summary(const World& world, double total_seconds, double render_secon
 }
 
 int simulate(const SimulateArguments& arguments) {
-  for (const fs::path& output : {arguments.png, arguments.mp4, arguments.glb, arguments.report})
+  for (const fs::path& output : {arguments.png, arguments.mp4, arguments.glb, arguments.report, arguments.record})
     if (!output.empty()) require_writable_folder(output);
   const Stopwatch total;
   const Scene scene = read_scene(arguments.scene);
   World world(scene, arguments.threads);
-  const auto steps = static_cast<size_t>(std::lround(arguments.seconds.value_or(scene.seconds) / scene.time_step));
+  auto steps = static_cast<size_t>(std::lround(arguments.seconds.value_or(scene.seconds) / scene.time_step));
+  std::optional<SessionReplay> replay;
+  if (!arguments.replay.empty()) {
+    replay.emplace(arguments.replay);
+    steps = arguments.seconds ? std::min(steps, replay->steps()) : replay->steps();
+  }
+  std::optional<SessionRecorder> recorder;
+  if (!arguments.record.empty()) recorder.emplace(world, arguments.record);
+  Simulation& moving = recorder ? static_cast<Simulation&>(*recorder) : world;
   const int width = arguments.size[0], height = arguments.size[1];
 
   double render_seconds = 0;
@@ -150,7 +158,10 @@ int simulate(const SimulateArguments& arguments) {
     progress.begin("simulate", steps);
     for (size_t i = 1; i <= steps; ++i) {
       progress.throw_if_cancelled();
-      world.step();
+      if (replay)
+        replay->step(world);
+      else
+        moving.step();
       const size_t due = film.due(static_cast<double>(i) * scene.time_step);
       if (video && due > 0) {
         const Stopwatch watch;
@@ -170,6 +181,7 @@ int simulate(const SimulateArguments& arguments) {
   if (!arguments.report.empty())
     write_file(arguments.report, report_json(world, total.seconds(), render_seconds));
   print_summary(world, total.seconds(), render_seconds);
+  if (replay) fmt::print("replayed: the state after each of {} steps is the recorded one\n", steps);
   return kSuccess;
 }
 
@@ -194,11 +206,17 @@ void add_simulate_verb(CLI::App& app, int& exit_code) {
   verb->add_flag("--smooth-video", arguments->smooth_video, "Smooth edges in the video, as a camera sees them (slower)");
   verb->add_option("--export", arguments->glb, "Write the end as glTF (.glb)");
   verb->add_option("--report", arguments->report, "Write counts, state hash and timings as JSON");
+  CLI::Option* replay = verb->add_option(
+      "--replay", arguments->replay,
+      "Do again what was recorded, and stop with an error at the first step that differs [its --seconds: all]");
+  verb->add_option("--record", arguments->record, "Write the state after every step, to compare with --replay elsewhere")
+      ->excludes(replay);
   verb->add_option("--threads", arguments->threads, "Threads to use [all cores]; the result does not depend on it")
       ->check(CLI::Range(0, 1024));
   verb->footer(
-      "Example:\n"
-      "  liana simulate data/scenes/wall.toml --seconds 60 --png wall.png --mp4 wall.mp4 --export wall.glb\n\n"
+      "Examples:\n"
+      "  liana simulate data/scenes/wall.toml --seconds 60 --png wall.png --mp4 wall.mp4 --export wall.glb\n"
+      "  liana simulate data/scenes/wall.toml --replay pulled.session --mp4 pulled.mp4\n\n"
       "Exit code: 0 done, 1 bad input, 2 bad command line, 130 stopped by Ctrl-C");
   verb->callback([arguments, &exit_code] { exit_code = simulate(*arguments); });
 }

@@ -8,6 +8,7 @@
 #include "runtime/growth/grown_weight.h"
 #include "runtime/growth/light.h"
 #include "runtime/growth/thickening.h"
+#include "runtime/sim/joints.h"
 #include "runtime/sim/rod_section.h"
 
 namespace liana {
@@ -16,7 +17,10 @@ namespace {
 constexpr double kYoungestSegment = 0.25;  // length of a new particle, of a full-grown one's
 constexpr double kLongestStep = 0.05;      // growth s; longer ones are cut
 constexpr double kThickenEvery = 0.2;      // growth s
-constexpr double kLeafStrand = 0.35;       // of the petiole's radius: what a leaf adds to the stems below
+constexpr double kUnseenJump = 0.01;       // of a tip's speed, that a step's calibration may change it by
+constexpr double kStiffnessByLength = 3;  // exponent, about: of a branch that keeps to its law while it grows
+constexpr double kForget = 1;             // growth s, in which a bent joint gets used to its new stiffness
+constexpr double kLeafStrand = 0.35;      // of the petiole's radius: what a leaf adds to the stems below
 
 /// Away from the support; away from the stem's underside where there is none.
 Vec3 outward_of(const std::optional<Support>& support, const Vec3& forward, const Vec3& to_sun) {
@@ -66,13 +70,17 @@ GrowthReport Climber::grow(Plant& plant, std::span<const SdfObstacle* const> obs
   const Surroundings around{obstacles, to_sun.normalized(), seed_.y()};
   if (!germinated_) germinate(plant, around);
   if (plant.particles.empty()) return {.released = anchors_.released()};  // all of it was cut
+  stiffness_.clear();
+  for (const Particle& p : plant.particles)
+    stiffness_.push_back({p.joint.shear_stiffness, p.joint.bend_stiffness});
   const int parts = std::max(1, static_cast<int>(std::ceil(dt / kLongestStep - 1e-9)));
   for (int i = 0; i < parts; ++i) grow_once(plant, around, dt / parts);
   anchors_.update(plant, dt);
 
   GrowthReport report;
-  recalibrate_changed(plant, report);
+  recalibrate_changed(plant, dt, report);
   carry_grown_weight(plant, parameters_.weight_grown_in * parameters_.gravity, rest_);
+  keep_loads(plant, dt);
   report.tips = std::count_if(shoots_.begin(), shoots_.end(), [](const Shoot& s) { return s.growing; });
   report.leaves = leaves_.count();
   report.anchors = anchors_.count();
@@ -224,6 +232,7 @@ void Climber::follow(const TopologyChange& change) {
   };
   keep(young_radius_, change.particles);
   keep(joint_length_, change.particles);
+  keep(kept_, change.particles);
   keep(calibrated_, change.branches);
 }
 
@@ -242,8 +251,9 @@ void Climber::break_bud_below_cut(Plant& plant, size_t index, const Surroundings
   sure.max_laterals = 1;
   const Shoot parent = shoot;  // start_shoot() moves the shoots
   const int level = branch.level;
-  for (const Bud& bud : breaking_buds(parent, level, head, forward, outward_of(support, forward, around.to_sun),
-                                      sure, crowding_, branching_))
+  for (const Bud& bud :
+       breaking_buds(parent, level, head, forward, outward_of(support, forward, around.to_sun), sure,
+                     crowding_, branching_))
     if (may_grow(plant, level + 2))
       start_shoot(plant, {node, Vec3(0, plant.particles[node.index()].half_length, 0)}, parent.branch,
                   bud.direction, {BranchId(), bud.tip_radius, bud.course, parent.longest / 2, parent.light});
@@ -268,7 +278,33 @@ void Climber::mark_growing(const Plant& plant, std::vector<uint8_t>& growing) co
   leaves_.mark_growing(plant, growing);
 }
 
-void Climber::recalibrate_changed(Plant& plant, GrowthReport& report) {
+// A joint whose stiffness changed while it is bent exerts what it did, and forgets that slowly.
+void Climber::keep_loads(Plant& plant, double dt) {
+  const auto pose = [&](ParticleId p) {
+    const Motion& m = plant.motion[p.index()];
+    return BodyPose{.position = m.position, .orientation = m.orientation};
+  };
+  kept_.resize(plant.particles.size(), {Vec3::Zero(), Vec3::Zero()});
+  const double left = std::exp(-dt / kForget);
+  for (size_t i = 0; i < stiffness_.size(); ++i) {
+    Particle& particle = plant.particles[i];
+    Joint& joint = particle.joint;
+    ByJoint& kept = kept_[i];
+    kept.shear *= left, kept.bend *= left;
+    const Vec3 shear = joint.shear_stiffness - stiffness_[i].shear,
+               bend = joint.bend_stiffness - stiffness_[i].bend;
+    if (!shear.isZero(0) || !bend.isZero(0)) {
+      const JointStrain e = joint_strain(joint, particle.parent.valid() ? pose(particle.parent) : BodyPose(),
+                                         pose(ParticleId(i)));
+      kept.shear += shear.cwiseProduct(e.shear);
+      kept.bend += bend.cwiseProduct(e.bend.vector);
+    }
+    joint.rest_force += kept.shear;
+    joint.rest_moment += kept.bend;
+  }
+}
+
+void Climber::recalibrate_changed(Plant& plant, double dt, GrowthReport& report) {
   for (const Shoot& shoot : shoots_) {
     if (!shoot.growing) continue;
     const Branch& branch = plant.branches[shoot.branch.index()];
@@ -283,9 +319,20 @@ void Climber::recalibrate_changed(Plant& plant, GrowthReport& report) {
     double mass = 0;
     for (const ParticleId p : branch.particles) mass += plant.particles[p.index()].mass + carried[p.index()];
     const double base = plant.particles[branch.particles.front().index()].joint.bend_stiffness.x();
-    const Calibrated now{branch.length, mass, base / branch.stiffness_scale};
+    Calibrated& last = calibrated_[i];
+    Calibrated now{.length = branch.length, .mass = mass, .base = base / branch.stiffness_scale};
+    now.seen_length = now.length, now.seen_base = now.base;
+    // A new node lengthens a shoot at once: that, too, is made good in steps.
+    double longer = std::max(0.0, std::log(now.length / last.seen_length));
+    if (branch.kind != DomainKind::Leaf) longer = std::min(longer, parameters_.elongation * dt / now.length);
+    const double grown = kStiffnessByLength * longer + std::abs(std::log(now.base / last.seen_base));
+    last.seen_length = now.length, last.seen_base = now.base;
+    // A relative change of a swinging branch's stiffness, times (ωΔt)², is what its tip's velocity jumps by.
+    const double phase = 2 * kPi * branch.material.frequency * plant.scheme.dt,
+                 unseen = kUnseenJump / (phase * phase);
     const bool its_turn = (i + count - next_settled_ % count) % count < turns;
-    if (!calibrated_[i].differs(now, its_turn ? parameters_.settled : parameters_.recalibration)) continue;
+    const double by = its_turn ? parameters_.settled : parameters_.recalibration;
+    if (!last.differs(now, by)) continue;
     const double scaling = branch.material.mass_scaling;
     branch.material = evaluate(law_.group(branch.group), branch.length);
     const double heavier = branch.material.mass_scaling / scaling;
@@ -293,8 +340,11 @@ void Climber::recalibrate_changed(Plant& plant, GrowthReport& report) {
       plant.particles[p.index()].mass *= heavier;
       plant.particles[p.index()].inertia *= heavier;
     }
-    calibrated_[i] = now;
-    if (!recalibrate(plant, BranchId(i), carried, chain_)) ++report.out_of_range;
+    const double most = last.length == 0 ? HUGE_VAL : unseen + grown;
+    const double before = branch.stiffness_scale;
+    if (!recalibrate(plant, BranchId(i), carried, chain_, most)) ++report.out_of_range;
+    now.on_its_way = std::abs(std::log(branch.stiffness_scale / before)) > 0.999 * most;
+    last = now;
     ++report.recalibrated;
   }
   next_settled_ = (next_settled_ + turns) % count;

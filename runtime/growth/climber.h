@@ -58,8 +58,10 @@ class Climber {
     double length = 0;  // m
     double mass = 0;    // kg, with what it carries
     double base = 0;    // N·m/rad, physical stiffness of its first joint
+    bool on_its_way = false;  // to what it should be: it was changed by no more than what is not seen
+    double seen_length = 0, seen_base = 0;  // in the last call
     bool differs(const Calibrated& now, double by) const {
-      return std::abs(now.length - length) > by * length || std::abs(now.mass - mass) > by * mass ||
+      return on_its_way || std::abs(now.length - length) > by * length || std::abs(now.mass - mass) > by * mass ||
              std::abs(now.base - base) > by * base;
     }
   };
@@ -71,7 +73,8 @@ class Climber {
   void finish_node(Plant& plant, size_t shoot, const Surroundings& around);
   void break_bud_below_cut(Plant& plant, size_t shoot, const Surroundings& around);
   void hold_on_again(Plant& plant, const Surroundings& around);
-  void recalibrate_changed(Plant& plant, GrowthReport& report);
+  void keep_loads(Plant& plant, double dt);
+  void recalibrate_changed(Plant& plant, double dt, GrowthReport& report);
 
   ClimberParameters parameters_;
   SpeciesLaw law_;
@@ -83,6 +86,11 @@ class Climber {
   Crowding crowding_;
   std::vector<double> young_radius_, joint_length_;  // m, per particle
   std::vector<Calibrated> calibrated_;               // per branch
+  struct ByJoint {
+    Vec3 shear, bend;
+  };
+  std::vector<ByJoint> stiffness_;  // N/m, N·m/rad, per particle, before the present call
+  std::vector<ByJoint> kept_;       // N, N·m, per particle
   HeldChain chain_;
   std::vector<Motion> rest_;
   bool germinated_ = false;

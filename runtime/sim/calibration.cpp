@@ -2,6 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "mesher/base/error.h"
 #include "runtime/sim/discrete_response.h"
 
@@ -60,12 +63,12 @@ CalibrationReport calibrate_plant(Plant& plant, const TimeScheme& wanted) {
   return report;
 }
 
-bool recalibrate(Plant& plant, BranchId id, std::span<const double> carried, HeldChain& chain) {
+bool recalibrate(Plant& plant, BranchId id, std::span<const double> carried, HeldChain& chain, double most) {
   Branch& branch = plant.branches[id.index()];
   require(!branch.particles.empty(), "a branch has particles");
   const UnitOscillator target = wanted_oscillator(branch, plant.scheme);
   chain.build(plant, id, carried);
-  const double scale = target.stiffness / chain.lowest_eigenvalue();
+  const double scale = std::clamp(target.stiffness / chain.lowest_eigenvalue(), std::exp(-most), std::exp(most));
   branch.stiffness_scale *= scale;
 
   // The step adds its own damping, so c* is not 2ξω; it is shared out as the bake shares that.

@@ -9,6 +9,7 @@
 //   : d_K ω²
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,8 +35,10 @@ CalibrationReport calibrate_plant(Plant& plant, const TimeScheme& wanted = {});
 /// Calibrates one branch again, for plant.scheme, after its length, mass, material or particles changed. Does
 /// not pop: what every joint exerts at this moment is kept (see set_stiffness). carried:
 /// carried_masses(plant). Reuses `chain`. False when the scheme cannot serve the target: the branch is then
-/// as near as can be; calibrate_plant() may help.
-bool recalibrate(Plant& plant, BranchId branch, std::span<const double> carried, HeldChain& chain);
+/// as near as can be; calibrate_plant() may help. most: natural logarithm of the largest factor by which the
+/// stiffness may change now.
+bool recalibrate(Plant& plant, BranchId branch, std::span<const double> carried, HeldChain& chain,
+                 double most = std::numeric_limits<double>::infinity());
 
 /// Changes a joint's stiffness without changing the wrench that it exerts at this moment: the difference goes
 /// into its rest load, as wood that grows on a bent shoot is free of stress there.

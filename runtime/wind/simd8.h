@@ -9,8 +9,8 @@ namespace liana {
 using Float8 = float __attribute__((vector_size(32)));
 using Int8 = int32_t __attribute__((vector_size(32)));
 using Float4 = float __attribute__((vector_size(16)));
-/// The same, at any address.
-using Float8Loose = float __attribute__((vector_size(32), aligned(4), may_alias));
-using Float4Loose = float __attribute__((vector_size(16), aligned(4), may_alias));
+/// The same, at any address. Clang keeps the alignment only of a typedef.
+typedef float Float8Loose __attribute__((vector_size(32), aligned(4), may_alias));
+typedef float Float4Loose __attribute__((vector_size(16), aligned(4), may_alias));
 
 }  // namespace liana

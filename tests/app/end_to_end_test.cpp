@@ -82,6 +82,19 @@ TEST_F(EndToEnd, SimulationIsTheSameOnOneThreadAndTwoAndAgain) {
   EXPECT_LT(json("report.json")["max_penetration_m"], 2e-3);
 }
 
+TEST_F(EndToEnd, RecordedRunIsReplayedOrItsFirstDifferenceNamed) {
+  const std::string climber = "[[climber]]\nspecies = \"ivy\"\nposition = [0, 0, 0]\n";
+  write_file(folder_ / "scene.toml", "[wind]\nvelocity = [2, 0, 1]\n" + climber);
+  run({"simulate", "scene.toml", "--seconds", "2", "--record", "a.session"});
+  run({"simulate", "scene.toml", "--replay", "a.session", "--threads", "1", "--report", "report.json"});
+  EXPECT_EQ(json("report.json")["steps"], 80);
+  write_file(folder_ / "scene.toml", "[wind]\nvelocity = [2.1, 0, 1]\n" + climber);
+  const ProgramResult other = run_liana({"simulate", "scene.toml", "--replay", "a.session"}, folder_.path());
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_NE(other.err.find("a.session:2: step 1 is the first that differs"), std::string::npos) << other.err;
+  EXPECT_EQ(run_liana({"simulate", "scene.toml", "--record", "/dev/full"}, folder_.path()).exit_code, 1);
+}
+
 TEST_F(EndToEnd, SimulateWritesPictureVideoAndModel) {
   write_file(folder_ / "scene.toml", "[[climber]]\nspecies = \"ivy\"\nposition = [0, 0, 0]\n");
   run({"simulate", "scene.toml", "--seconds", "0.5", "--png", "a.png", "--size", "320", "180", "--mp4", "a.mp4",
