@@ -208,7 +208,15 @@ void World::step() {
     for (const auto& inhabitant : inhabitants_) in_wind_.push_back({&inhabitant->plant, inhabitant->growing});
     wind_.advance(in_wind_, time(), scene_.time_step);
   }
-  parallel_for(inhabitants_.size(), threads_, [&](size_t i, unsigned) { step_inhabitant(i); });
+  // Threads that no other large plant needs share one.
+  constexpr size_t kLarge = 1000;
+  const auto large =
+      static_cast<unsigned>(std::count_if(inhabitants_.begin(), inhabitants_.end(), [](const auto& i) {
+        return i->plant.particles.size() >= kLarge && !i->asleep();
+      }));
+  const unsigned all = threads_ > 0 ? threads_ : default_thread_count();
+  const unsigned share = std::max(1u, all / std::max(1u, large));
+  parallel_for(inhabitants_.size(), threads_, [&](size_t i, unsigned) { step_inhabitant(i, share); });
   if (wind_.has_air()) wind_.react(in_wind_);
   break_what_is_overloaded();
   remove_parts();
@@ -226,7 +234,7 @@ void World::grow(Inhabitant& self) {
   });
 }
 
-void World::step_inhabitant(size_t index) {
+void World::step_inhabitant(size_t index, unsigned threads) {
   Inhabitant& self = *inhabitants_[index];
   WorldReport& report = self.report;
   if (self.plant.particles.empty() || self.asleep()) return;
@@ -237,7 +245,7 @@ void World::step_inhabitant(size_t index) {
     if (grab.plant == index) self.springs.push_back(grab.spring);
   const ContactStepReport done =
       self.stepper.step(self.plant, {solids_, kGroundHeight}, self.wrenches, self.springs,
-                        {.dt = scene_.time_step, .gravity = scene_.gravity});
+                        {.dt = scene_.time_step, .gravity = scene_.gravity, .threads = threads});
   report.contacts = done.contacts.contacts;
   report.max_penetration = std::max(report.max_penetration, done.contacts.max_penetration);
   report.contact_passes += static_cast<size_t>(done.passes - 1);

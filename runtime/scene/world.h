@@ -114,7 +114,7 @@ class World final : public Simulation {
   void grow(Inhabitant& self);
   void add_pluck(const ScenePluck& entry, const Bake& bake);
   void pluck(size_t index);
-  void step_inhabitant(size_t index);
+  void step_inhabitant(size_t index, unsigned threads);
   void add_to(DrawScene& scene, bool names) const;
   static void add(const WorldReport& own, WorldReport& total);
   // world_parts.cpp
