@@ -117,8 +117,6 @@ class Probes::View {
     return solid_ ? nearest(*solid_, x, reach) : Nearest{x.y() - ground_, Vec3::UnitY()};
   }
 
-  bool blade() const { return blade_; }
-
   /// Where an edge of the solid crosses the axis between the middle and an end, or comes nearest to it. The
   /// distance to a convex solid along a line is convex: tangents meet below it.
   std::optional<Point> between(const Point& middle, const Point& head, double reach) const {
