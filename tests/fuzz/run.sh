@@ -14,7 +14,7 @@ export TMPDIR=${TMPDIR:-/dev/shm}  # readers of files write one per input
 
 most_bytes() {
   case $1 in
-    repair_ladder) echo 1024 ;;
+    repair_ladder) echo 400 ;;
     shells) echo 2048 ;;
     bake | species | manifest | scene) echo 8192 ;;
     *) echo 4096 ;;
