@@ -162,7 +162,8 @@ SegmentedPlant segmented(const tinygltf::Model& model, const std::vector<GltfNod
   SegmentedPlant plant;
   std::vector<DomainId> domain_of(nodes.size());  // of the node or of its nearest ancestor with a mesh
   std::unordered_set<std::string> names;
-  size_t triangles = 0;
+  size_t triangles = 0, renamed = 0;
+  std::string first_renamed;
   for (const int index : domain_nodes(nodes, file)) {
     const GltfNode& node = nodes[index];
     const std::string where = fmt::format("{}: node '{}'", file, node.name);
@@ -179,6 +180,7 @@ SegmentedPlant segmented(const tinygltf::Model& model, const std::vector<GltfNod
       domain.group = domain.kind == DomainKind::Leaf ? "leaf" : fmt::format("level{}", domain.level);
     domain.surface = world_surface(model, node, scale, where);
     domain.name = unique_name(node.name, names);
+    if (domain.name != node.name && renamed++ == 0) first_renamed = domain.name;
     triangles += domain.surface.triangles.size();
     if (triangles > kMaxTriangles)
       throw Error(Error::Kind::Input, fmt::format("{}: more than {} triangles", file, kMaxTriangles),
@@ -186,6 +188,9 @@ SegmentedPlant segmented(const tinygltf::Model& model, const std::vector<GltfNod
     domain_of[index] = DomainId(plant.domains.size());
     plant.domains.push_back(std::move(domain));
   }
+  if (renamed > 0)
+    plant.notes.push_back(fmt::format("{} of {} names were given before: numbered, as '{}'", renamed,
+                                      plant.domains.size(), first_renamed));
   return plant;
 }
 

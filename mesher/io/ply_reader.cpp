@@ -23,12 +23,17 @@ const char* const kExportAgain = "the file is cut short or damaged: export the m
 /// The values of the body in their order; ASCII words may stand on any line.
 class PlyValues {
  public:
-  PlyValues(std::string_view body, PlyFormat format) : rest_(body), format_(format) {}
+  PlyValues(std::string_view body, PlyFormat format) : body_(body), rest_(body), format_(format) {}
 
   /// NaN where the body ends or holds no number.
   double next(PlyType type) { return format_ == PlyFormat::Ascii ? next_word() : next_binary(type); }
   size_t bytes_left() const { return rest_.size(); }
   bool is_ascii() const { return format_ == PlyFormat::Ascii; }
+  /// Ends of lines before the end of the value last given.
+  size_t lines_passed() const {
+    const std::string_view passed = body_.substr(0, body_.size() - rest_.size());
+    return static_cast<size_t>(std::count(passed.begin(), passed.end(), '\n'));
+  }
 
  private:
   double next_word() {
@@ -74,7 +79,7 @@ class PlyValues {
     }
   }
 
-  std::string_view rest_;
+  std::string_view body_, rest_;
   PlyFormat format_;
 };
 
@@ -89,8 +94,8 @@ class PlyParser {
     for (const PlyElement& element : header_.elements) {
       const size_t least = element.least_bytes(header_.format);
       if (element.count > 0 && least > 0 && element.count > values_.bytes_left() / least)
-        throw error(fmt::format("{} elements '{}' do not fit into the {} bytes that are left", element.count,
-                                shown(element.name), values_.bytes_left()));
+        throw error_here(fmt::format("{} elements '{}' do not fit into the {} bytes that are left",
+                                     element.count, shown(element.name), values_.bytes_left()));
       if (element.name == "vertex")
         vertices(element);
       else if (element.name == "face")
@@ -106,13 +111,20 @@ class PlyParser {
   Error error(const std::string& reason, const std::string& hint = kExportAgain) const {
     return Error(Error::Kind::Input, file_ + ": " + reason, hint);
   }
+  /// With the line of the value last read, if there are lines.
+  Error error_here(const std::string& reason) const {
+    if (!values_.is_ascii()) return error(reason);
+    return Error(Error::Kind::Input,
+                 fmt::format("{}:{}: {}", file_, header_.lines + 1 + values_.lines_passed(), reason),
+                 kExportAgain);
+  }
 
   size_t list_length(const PlyProperty& property, const PlyElement& element, size_t index) {
     const double length = values_.next(property.count_type);
     const size_t least = values_.is_ascii() ? 1 : size_of(property.type);
     if (!(length >= 0) || length > double(values_.bytes_left() / least) || length != std::floor(length))
-      throw error(fmt::format("the list '{}' of {} {} has a length that the file cannot hold",
-                              shown(property.name), shown(element.name), index));
+      throw error_here(fmt::format("the list '{}' of {} {} has a length that the file cannot hold",
+                                   shown(property.name), shown(element.name), index));
     return static_cast<size_t>(length);
   }
 
@@ -144,7 +156,7 @@ class PlyParser {
         else
           position[axis] = values_.next(element.properties[p].type);
       }
-      if (!position.allFinite()) throw error(fmt::format("vertex {} has no finite position", i));
+      if (!position.allFinite()) throw error_here(fmt::format("vertex {} has no finite position", i));
       soup_.positions.push_back(position);
     }
   }
@@ -168,7 +180,7 @@ class PlyParser {
     for (uint32_t& corner : corners_) {
       const double vertex = values_.next(property.type);
       if (!(vertex >= 0) || vertex >= double(soup_.positions.size()) || vertex != std::floor(vertex))
-        throw error(
+        throw error_here(
             fmt::format("face {} names vertex {}, and there are {}", index, vertex, soup_.positions.size()));
       corner = static_cast<uint32_t>(vertex);
     }

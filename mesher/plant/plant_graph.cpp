@@ -6,8 +6,6 @@
 namespace liana {
 namespace {
 
-constexpr double kThinTip = 0.0015;  // m
-
 bool known(double radius) {
   return radius > 0;
 }  // not NaN, not 0
@@ -48,7 +46,7 @@ size_t fill_radii(PlantGraph& graph) {
     given.push_back(node.radius);
   }
   if (missing == 0) return 0;
-  if (!std::isfinite(thinnest)) thinnest = kThinTip;
+  if (!std::isfinite(thinnest)) thinnest = kTipRadius;
   std::vector<uint8_t> reached(graph.nodes.size(), 0);
   for (size_t i = graph.nodes.size(); i-- > 0;) {
     const int parent = graph.nodes[i].parent;

@@ -21,10 +21,12 @@ struct PlantGraph {
   std::vector<std::string> notes;  ///< what was passed over or assumed
 };
 
+constexpr double kTipRadius = 0.0015;  ///< m, of tips when no radius at all is known
+
 /// Gives every node without a radius one: along an axis between two known ones in proportion; towards tips
 /// and bases, and where nothing is known, by the pipe model (a section is as large as those it carries
-/// [Shinozaki 1964]), from tips of the smallest known radius or 1.5 mm, never thicker than what carries it.
-/// Returns how many.
+/// [Shinozaki 1964]), from tips of the smallest known radius or kTipRadius, never thicker than what carries
+/// it. Returns how many.
 size_t fill_radii(PlantGraph& graph);
 
 }  // namespace liana

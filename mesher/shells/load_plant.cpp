@@ -92,7 +92,12 @@ SegmentedPlant load_skeleton(PlantGraph graph, Format format, const fs::path& pa
     graph.notes.push_back(
         fmt::format("positions taken as {}{}, diameters as millimetres, up as +{}", name_of(unit),
                     options.unit == Unit::Auto ? ", as MTG files usually have them" : "", z_up ? 'Z' : 'Y'));
-  if (const size_t filled = fill_radii(graph))
+  if (const size_t filled = fill_radii(graph); filled == graph.nodes.size())
+    graph.notes.push_back(
+        fmt::format("no diameter is given: tips are taken to be {:.2g} mm thick, all else by the pipe model; "
+                    "frequencies follow from it, so give at least the trunk's",
+                    2e3 * kTipRadius));
+  else if (filled > 0)
     graph.notes.push_back(
         fmt::format("{} of {} diameters are missing: filled along the axes and by the pipe model", filled,
                     graph.nodes.size()));

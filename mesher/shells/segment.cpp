@@ -228,6 +228,9 @@ SegmentedPlant segment(const TriangleSoup& soup, Unit unit, const std::string& f
   const bool any_branch = std::any_of(parts.shapes.begin(), parts.shapes.end(), [&](const ShellShape& shape) {
     return !shape.bones.empty() && parts.kinds[&shape - parts.shapes.data()] == DomainKind::Branch;
   });
+  if (parts.shells.empty())
+    throw Error(Error::Kind::Input, file + ": none of its triangles has an area",
+                "look at it in the program that made it: is it scaled to nothing?");
   if (!any_branch)
     throw Error(Error::Kind::Input,
                 fmt::format("{}: none of its {} is a branch: all are sheets or named as leaves", file,

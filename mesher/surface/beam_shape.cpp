@@ -58,7 +58,7 @@ std::vector<Slice> slices(const Mesh& mesh, const std::vector<double>& along, do
     double longest = 0;
     for (int k = 0; k < 3; ++k)
       longest = std::max(longest, (mesh.positions[t[k]] - mesh.positions[t[(k + 1) % 3]]).norm());
-    const int parts = std::clamp(static_cast<int>(4 * longest / length * count), 1, 100);
+    const int parts = static_cast<int>(std::clamp(4 * longest / length * count, 1., 100.));
     const double area = area_vector(mesh, t).norm() / parts / parts;
     for (int i = 0; i < parts; ++i)
       for (int j = 0; j < 2 * i + 1; ++j) {  // the small triangles of row i, upright and hanging

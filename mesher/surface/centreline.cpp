@@ -67,7 +67,7 @@ void align_thin_axes(std::vector<Section>& line) {
 
 std::vector<Section> find_centreline(const MarkedSurface& solid, const Vec3& root, double length,
                                      double diameter) {
-  const int count = std::clamp(static_cast<int>(std::lround(length / diameter)), 8, 24);
+  const int count = static_cast<int>(std::lround(std::clamp(length / diameter, 8., 24.)));
   std::vector<Vec3> centre{root};
   for (int i = 1; i < count - 1; ++i) centre.push_back(contour_middle(solid, length * i / (count - 1)));
   // The contours at the very tip are shreds of its rim: go on straight from the last two.

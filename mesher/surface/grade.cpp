@@ -9,6 +9,7 @@ namespace liana {
 namespace {
 
 constexpr double kSnap = 0.25;      // of the ring spacing: nearer vertices count as on the line
+constexpr double kFinest = 1e-6;    // of the length, for a root pinched to a line
 constexpr double kTolerated = 1.3;  // a triangle may be this much longer than the spacing
 
 /// True if a triangle that crosses the level is longer (along the distance) than the rings should be apart.
@@ -42,10 +43,12 @@ void drop_unused(MarkedSurface& surface) {
 }  // namespace
 
 std::vector<double> ring_levels(double length, double diameter) {
+  if (!(length > 0) || !std::isfinite(length)) return {};
   const double largest = length / 6;
   std::vector<double> levels;
   double at = 0;
-  for (double step = diameter / 2; step < largest && at + step < length - largest / 2; step *= 2) {
+  for (double step = std::max(diameter / 2, kFinest * length);
+       step < largest && at + step < length - largest / 2; step *= 2) {
     at += step;
     levels.push_back(at);
   }

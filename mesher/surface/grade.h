@@ -8,7 +8,8 @@
 namespace liana {
 
 /// Distances at which a clamped branch wants rings: 0.5 d, 1.5 d, 3.5 d, ... while steps are below length/6,
-/// then even steps of at most length/6. Ascending, without 0 and length.
+/// then even steps of at most length/6. Ascending, without 0 and length; none when
+/// the length is 0 or not finite.
 std::vector<double> ring_levels(double length, double diameter);
 
 /// Splits triangles along the iso-lines of `distance` at ring_levels, where they are longer than the rings

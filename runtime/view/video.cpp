@@ -63,13 +63,14 @@ VideoWriter::VideoWriter(const std::filesystem::path& path, int width, int heigh
   posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, output[1], 2);
   const std::string size = fmt::format("{}x{}", width, height), rate = fmt::format("{}", frames_per_second);
+  // Without -xerror a disk that fills while the last bytes are written is still a success.
   // A path that starts with a dash would be taken for an option: "file:" makes it a name.
   const std::string target = "file:" + file_.partial().string();
-  const char* arguments[] = {"ffmpeg",     "-y",       "-nostdin", "-loglevel",    "error",      "-f",
-                             "rawvideo",   "-pix_fmt", "rgb24",    "-s",           size.c_str(), "-r",
-                             rate.c_str(), "-i",       "pipe:0",   "-c:v",         "libx264",    "-preset",
-                             "veryfast",   "-crf",     "19",       "-pix_fmt",     "yuv420p",    "-movflags",
-                             "+faststart", "-f",       "mp4",      target.c_str(), nullptr};
+  const char* arguments[] = {"ffmpeg",    "-y",         "-xerror",  "-nostdin", "-loglevel",    "error",
+                             "-f",        "rawvideo",   "-pix_fmt", "rgb24",    "-s",           size.c_str(),
+                             "-r",        rate.c_str(), "-i",       "pipe:0",   "-c:v",         "libx264",
+                             "-preset",   "veryfast",   "-crf",     "19",       "-pix_fmt",     "yuv420p",
+                             "-movflags", "+faststart", "-f",       "mp4",      target.c_str(), nullptr};
   const int failure =
       posix_spawnp(&child_, "ffmpeg", &actions, nullptr, const_cast<char* const*>(arguments), environ);
   posix_spawn_file_actions_destroy(&actions);

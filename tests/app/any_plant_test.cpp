@@ -39,6 +39,15 @@ TEST(AnyPlant, ASkeletonBakes) {
   EXPECT_THAT(baked.out, HasSubstr("2 of 4 diameters are missing"));
 }
 
+TEST(AnyPlant, ASkeletonWithoutDiametersSaysWhatIsTaken) {
+  const ScratchFolder folder;
+  write_file(folder / "stem.json",
+             R"({"liana_graph": 1, "nodes": [{"position": [0,0,0]}, {"parent": 0, "position": [0,0.2,0]}]})");
+  const ProgramResult baked = run_liana({"bake", "stem.json", "--species", "walnut"}, folder.path());
+  EXPECT_EQ(baked.exit_code, 0) << baked.err;
+  EXPECT_THAT(baked.out, HasSubstr("no diameter is given: tips are taken to be 3 mm thick"));
+}
+
 TEST(AnyPlant, BadFilesAreOneMessageWithThePlace) {
   const ScratchFolder folder;
   write_file(folder / "a.obj", "v 0 0 0\nf 1 2 3\n");

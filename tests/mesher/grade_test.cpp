@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 
 #include "mesher/base/mesh_checks.h"
@@ -38,6 +40,14 @@ TEST(RingLevels, DoubleFromHalfADiameterThenStayBelowASixth) {
       EXPECT_DOUBLE_EQ(levels[1], 1.5 * diameter);
     }
   }
+}
+
+TEST(RingLevels, EndForARootWithoutWidthAndAreNoneWithoutLength) {
+  EXPECT_LT(ring_levels(1, 0).size(), 40u);  // doubled from 1e-6 of the length: 20, and at most 6 even ones
+  EXPECT_TRUE(ring_levels(0, 0).empty());
+  EXPECT_TRUE(ring_levels(0, 0.01).empty());
+  EXPECT_TRUE(ring_levels(std::numeric_limits<double>::infinity(), 0.01).empty());
+  EXPECT_TRUE(ring_levels(std::nan(""), 0.01).empty());
 }
 
 TEST(Grade, GivesABarePrismTheWantedRingsAndKeepsItsShape) {

@@ -155,9 +155,9 @@ TEST(PlyReader, NamesWhatIsWrong) {
   EXPECT_MENTIONS(ply_complaint("plx\n"), "x.ply:1:");
   EXPECT_MENTIONS(ply_complaint("ply\nformat ascii 1.0\nelement vertex many\n"), "x.ply:3:");
   EXPECT_MENTIONS(ply_complaint("ply\nformat binary 1.0\n"), "x.ply:2: unknown format");
-  EXPECT_MENTIONS(ply_complaint(kHead + faces + points + "3 0 1 4\n"), "face 0 names vertex 4");
+  EXPECT_MENTIONS(ply_complaint(kHead + faces + points + "3 0 1 4\n"), "x.ply:14: face 0 names vertex 4");
   EXPECT_MENTIONS(ply_complaint(kHead + faces + points + "3 0 1\n"), "face 0");
-  EXPECT_MENTIONS(ply_complaint(kHead + faces + "0 0 0\n1 0 0\n"), "vertex");
+  EXPECT_MENTIONS(ply_complaint(kHead + faces + "0 0 0\n1 0 0\n1 nan 0\n0 1 0\n"), "x.ply:12: vertex 2");
   EXPECT_MENTIONS(ply_complaint(kHead + "end_header\n" + points), "holds no faces (4 points)");
   EXPECT_MENTIONS(ply_complaint("ply\nformat binary_little_endian 1.0\nelement vertex "
                                 "99999999999999\nproperty float x\nend_header\n"),

@@ -187,6 +187,8 @@ TEST(PlantFile, MakesNamesUniqueAndAllowsSeveralTrunks) {
   std::set<std::string> names;
   for (const Domain& domain : plant.domains) names.insert(domain.name);
   EXPECT_EQ(names.size(), plant.domains.size());
+  ASSERT_EQ(plant.notes.size(), 1u);
+  EXPECT_NE(plant.notes[0].find("numbered, as 'x~2'"), std::string::npos) << plant.notes[0];
   EXPECT_EQ(
       std::count_if(plant.domains.begin(), plant.domains.end(), [](auto& d) { return !d.parent.valid(); }),
       2);

@@ -298,6 +298,20 @@ TEST(Segment, RefusesAMeshWithoutABranch) {
   }
 }
 
+TEST(Segment, SaysWhenNoTriangleHasAnArea) {
+  TriangleSoup soup;
+  soup.positions.assign(4, Vec3(1, 1, 1));
+  soup.triangles = {{0, 1, 2}, {1, 2, 3}};
+  soup.labels.resize(1);
+  soup.label = {0, 0};
+  try {
+    segment(soup, Unit::Metre, "x");
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("has an area"), std::string::npos) << error.what();
+  }
+}
+
 TEST(LoadPlant, TakesASegmentedFileAsItIs) {
   const ScratchFolder folder;
   SegmentedPlant plant = make_small_plant();

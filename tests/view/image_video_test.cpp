@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <random>
 
 #include "mesher/base/error.h"
 #include "mesher/base/files.h"
@@ -112,6 +114,29 @@ TEST_F(Video, DyingFfmpegIsAnErrorNotADeath) {
   setenv("PATH", before.c_str(), 1);
   EXPECT_FALSE(fs::exists(folder / "a.mp4"));
   EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(Video, FullDiskIsAnErrorAndLeavesNothing) {
+  // One page. Noise does not compress; three frames of it wait in ffmpeg's buffer of 32 kB until its last
+  // write.
+  if (mount("tmpfs", folder.c_str(), "tmpfs", 0, "size=4k") != 0)
+    GTEST_SKIP() << "mounting is not allowed here";
+  std::mt19937 random(1);
+  Image noise = gradient(64, 64);
+  for (const int frames : {3, 60}) try {
+      VideoWriter video(folder / "a.mp4", noise.width, noise.height, 25);
+      for (int i = 0; i < frames; ++i) {
+        for (uint8_t& channel : noise.pixels) channel = static_cast<uint8_t>(random());
+        video.add(noise);
+      }
+      video.finish();
+      ADD_FAILURE() << frames;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind, Error::Kind::Output);
+      EXPECT_NE(std::string(error.what()).find("No space left"), std::string::npos) << error.what();
+    }
+  EXPECT_EQ(files(), 0u);
+  umount(folder.c_str());
 }
 
 TEST_F(Video, MissingFfmpegNamesThePackage) {
