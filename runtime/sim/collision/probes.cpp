@@ -255,7 +255,9 @@ void Probes::look_at(const Plant& plant, size_t i, double dt, const SdfObstacle*
   const View::Point head = view.at(1, reach + 2 * particle.half_length);
   note(middle, 0);
   note(head, 1);
-  if (particle.joint.shear_stiffness.isZero(0)) note(view.at(-1, reach), 2);
+  // A tail is its parent's head, unless it is loose or on a petiole.
+  const bool joined = particle.joint.on_self.y() > -1.01 * particle.half_length;
+  if (!joined || particle.joint.shear_stiffness.isZero(0)) note(view.at(-1, reach), 2);
   if (solid)
     if (const auto crossed = view.between(middle, head, reach)) note(*crossed, kBetween);
 }

@@ -30,8 +30,8 @@ struct Gap {
 
 /// The gaps of every probe of particles from `first` on that can get into something within dt, as they move
 /// now; with dt = 0, those of the present with solids where they stand. Probes: centre and head of a particle
-/// (its tail is its parent's head, unless it is loose), and the point between that is nearest to a thin
-/// solid.
+/// (its tail is its parent's head, unless it is loose or on a petiole), and the point between that is nearest
+/// to a thin solid.
 class Probes {
  public:
   const std::vector<Gap>& look(const Plant& plant, const CollisionScene& scene, double dt, size_t first = 0);
