@@ -20,6 +20,7 @@
 namespace liana {
 namespace {
 
+constexpr size_t kLarge = 1000;         // particles of a plant whose step is worth sharing
 constexpr size_t kMostBreaksAStep = 8;  // of one plant; what remains overloaded breaks in the next
 constexpr double kGroundHeight = 0;     // m: the ground is level, as the renderer draws it
 
@@ -209,7 +210,6 @@ void World::step() {
     wind_.advance(in_wind_, time(), scene_.time_step);
   }
   // Threads that no other large plant needs share one.
-  constexpr size_t kLarge = 1000;
   const auto large =
       static_cast<unsigned>(std::count_if(inhabitants_.begin(), inhabitants_.end(), [](const auto& i) {
         return i->plant.particles.size() >= kLarge && !i->asleep();

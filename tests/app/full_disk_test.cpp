@@ -90,7 +90,7 @@ TEST(DevFull, OutputThereIsAnErrorAndTheDeviceStays) {
 TEST(DevFull, WordsThatCannotBePrintedAreAnError) {
   const ScratchFolder folder;
   const std::string command =
-      std::string(LIANA_PROGRAM) + " inspect --species > /dev/full 2> " + (folder / "err").string();
+      "'" LIANA_PROGRAM "' inspect --species > /dev/full 2> '" + (folder / "err").string() + "'";
   const int status = std::system(command.c_str());
   EXPECT_EQ(WEXITSTATUS(status), 1);
   EXPECT_THAT(read_file(folder / "err"), HasSubstr("cannot be written"));

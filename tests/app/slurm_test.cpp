@@ -31,9 +31,10 @@ TEST(Slurm, ArrayJobBakesTheManifestAndItsShardsAreMerged) {
 
   const std::string top = LIANA_SOURCE_DIR;
   const std::string command =
-      "cd " + folder.path().string() + " && LIANA=" LIANA_PROGRAM " XDG_CACHE_HOME=$PWD/cache timeout 120 " +
-      top + "/tests/support/one_node_slurm.sh $PWD/slurm sbatch --wait --array=1-2 --mem=300M " + top +
-      "/data/slurm/bake_array.sh plants.toml > out 2>&1";
+      "cd '" + folder.path().string() +
+      "' && LIANA='" LIANA_PROGRAM "' XDG_CACHE_HOME=$PWD/cache timeout 120 '" + top +
+      "/tests/support/one_node_slurm.sh' \"$PWD/slurm\" sbatch --wait --array=1-2 --mem=300M '" + top +
+      "/data/slurm/bake_array.sh' plants.toml > out 2>&1";
   const int status = std::system(command.c_str());
   ASSERT_TRUE(WIFEXITED(status));
   const std::string out = read_file(folder / "out");

@@ -11,7 +11,7 @@ namespace liana {
 struct ShellOptions {
   double thickness = 4e-3;  ///< m, of a sheet
   size_t most_solids = 64;  ///< closed shells beyond that, the smallest, count as sheets
-  ContactFeel feel;
+  ContactFeel feel = {};
 };
 
 struct Shells {
