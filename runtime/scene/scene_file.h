@@ -17,9 +17,9 @@ namespace liana {
 struct SceneObstacle {
   std::string name;
   Mesh mesh;  ///< world frame, m: scaled, rotated and placed, before it moves
-  Vec3 color;
-  bool bricks;
-  ContactFeel feel;
+  Vec3 color = Vec3::Zero();
+  bool bricks = false;
+  ContactFeel feel = {};
   std::optional<double> thickness;  ///< m, of the parts that have no inside
   std::optional<ObstacleMotion> motion;
 };
