@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "mesher/base/error.h"
@@ -12,6 +13,11 @@ namespace liana {
 namespace {
 
 constexpr double kLeastBand = 4e-2;  // m
+
+uint64_t new_state() {
+  static std::atomic<uint64_t> last{0};
+  return ++last;
+}
 
 /// Trilinear value and gradient (per voxel) inside a cell; f[x + 2y + 4z] at its corners, t in [0, 1]³.
 double interpolate(const double (&f)[8], const Vec3& t, Vec3& gradient) {
@@ -52,7 +58,7 @@ double geometric_voxel(const Mesh& mesh, double sheet) {
 }
 
 SdfObstacle::SdfObstacle(const Mesh& mesh, const SdfOptions& options)
-    : surface_(mesh, options.sheet), half_sheet_(options.sheet / 2) {
+    : surface_(mesh, options.sheet), state_(new_state()), half_sheet_(options.sheet / 2) {
   low_ = high_ = surface_.mesh().positions.front();
   for (const Vec3& p : surface_.mesh().positions) low_ = low_.cwiseMin(p), high_ = high_.cwiseMax(p);
   low_.array() -= half_sheet_;
@@ -147,6 +153,8 @@ void SdfObstacle::mark_bent(Brick& brick, const Vec3& corner, const std::vector<
 }
 
 void SdfObstacle::place(const ObstaclePose& pose) {
+  if (!placed_ || pose.rotation.coeffs() != pose_.rotation.coeffs() || pose.position != pose_.position)
+    state_ = new_state();
   pose_ = pose;
   back_ = pose.rotation.toRotationMatrix().transpose();
   placed_ = true;
@@ -192,19 +200,66 @@ SdfSample SdfObstacle::sample_mesh(const Vec3& x) const {
     const SurfacePoint exact = surface_.closest(x);
     return {exact.distance, gradient_at(exact, x)};
   }
-  const float* first = &brick.values[in.x() + kSide * (in.y() + kSide * in.z())];
-  const double corners[8] = {first[0],
-                             first[1],
-                             first[kSide],
-                             first[kSide + 1],
-                             first[kSide * kSide],
-                             first[kSide * kSide + 1],
-                             first[kSide * kSide + kSide],
-                             first[kSide * kSide + kSide + 1]};
+  double corners[8];
+  brick.corners(in, corners);
   SdfSample result;
   result.distance = interpolate(corners, place - cell.cast<double>(), result.gradient);
   result.gradient.normalize();
   return result;
+}
+
+double SdfObstacle::least(const Vec3& centre, const Vec3& half) const {
+  const Vec3 low = centre - half, high = centre + half;
+  // The field leaves the box around the solid with a distance of zero or more, and errs by little.
+  const Vec3 apart = (low - world_high_).cwiseMax(world_low_ - high).cwiseMax(0.0);
+  if (apart.squaredNorm() > 4 * band_ * band_) return band_;
+  if (!placed_) return least_mesh(low, high);
+  const Vec3 within = to_mesh(centre), reach = back_.cwiseAbs() * half;
+  return least_mesh(within - reach, within + reach);
+}
+
+// In a cell the field is multilinear, so on the part of the box in it, it is least at a corner of that part;
+// in a bent one it is a distance, which changes by no more than the way.
+double SdfObstacle::least_mesh(const Vec3& low, const Vec3& high) const {
+  constexpr double kMostCells = 100;
+  const Vec3 top = (bricks_ * kCells).cast<double>();
+  const Vec3 from = (low - origin_) / voxel_, to = (high - origin_) / voxel_;
+  // Beyond the grid nothing is nearer than the band.
+  if (!from.allFinite() || !to.allFinite()) return -std::numeric_limits<double>::infinity();
+  const Eigen::Vector3i first = from.cwiseMax(0.0).cwiseMin(top).cast<int>(),
+                        last = to.cwiseMax(0.0).cwiseMin(top - Vec3::Ones()).cast<int>();
+  double least = band_;
+  if ((last - first).minCoeff() < 0) return least;
+  if ((last - first + Eigen::Vector3i::Ones()).cast<double>().prod() > kMostCells)
+    return -std::numeric_limits<double>::infinity();
+  for (int z = first.z(); z <= last.z(); ++z)
+    for (int y = first.y(); y <= last.y(); ++y)
+      for (int x = first.x(); x <= last.x(); ++x) {
+        const Eigen::Vector3i cell(x, y, z), b = cell / kCells, in = cell - b * kCells;
+        const size_t at = b.x() + size_t(bricks_.x()) * (b.y() + size_t(bricks_.y()) * b.z());
+        if (brick_index_[at] < 0) {
+          if (centre_value_[at] < 0) return -std::numeric_limits<double>::infinity();
+          continue;
+        }
+        const Vec3 begin = (from - cell.cast<double>()).cwiseMax(0.0).cwiseMin(1.0),
+                   end = (to - cell.cast<double>()).cwiseMax(0.0).cwiseMin(1.0);
+        const Brick& brick = filled_[brick_index_[at]];
+        if (brick.bent[in.z() * kCells + in.y()] >> in.x() & 1) {
+          const Vec3 middle = origin_ + voxel_ * (cell.cast<double>() + (begin + end) / 2);
+          least = std::min(least, surface_.closest(middle).distance - voxel_ * (end - begin).norm() / 2);
+        } else {
+          double corners[8];
+          brick.corners(in, corners);
+          Vec3 gradient;
+          for (int c = 0; c < 8; ++c) {
+            const Vec3 t(c & 1 ? end.x() : begin.x(), c & 2 ? end.y() : begin.y(),
+                         c & 4 ? end.z() : begin.z());
+            least = std::min(least, interpolate(corners, t, gradient));
+          }
+        }
+        if (least <= 0) return least;
+      }
+  return least;
 }
 
 size_t SdfObstacle::bytes() const {
