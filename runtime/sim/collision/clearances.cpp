@@ -10,7 +10,7 @@ namespace {
 constexpr double kMostRoom = 0.03;   // m; below what any solid's band is
 constexpr double kLeastRoom = 5e-5;  // m, below which it is not worth remembering
 constexpr uint8_t kTryAgain = 8;     // calls
-constexpr double kRounding = 1e-12;  // m
+constexpr double kRounding = 1e-10;  // m
 
 /// Half of a box around a particle as probes see it, m: a stem is a cylinder, a blade has its width in the
 /// middle and none at its ends.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 #include "mesher/base/error.h"
 #include "mesher/base/parallel.h"
@@ -197,7 +198,12 @@ SdfSample SdfObstacle::sample_mesh(const Vec3& x) const {
   }
   const Brick& brick = filled_[brick_index_[at]];
   if (brick.bent[in.z() * kCells + in.y()] >> in.x() & 1) {
-    const SurfacePoint exact = surface_.closest(x);
+    // No further than by way of the nearest corner.
+    const Eigen::Vector3i near = (place - cell.cast<double>()).array().round().cast<int>();
+    const double value =
+        brick.values[near.x() + in.x() + kSide * (near.y() + in.y() + kSide * (near.z() + in.z()))];
+    const double way = voxel_ * (place - (cell + near).cast<double>()).norm();
+    const SurfacePoint exact = surface_.closest(x, (std::abs(value) + way) * (1 + 1e-6));
     return {exact.distance, gradient_at(exact, x)};
   }
   double corners[8];
@@ -219,7 +225,8 @@ double SdfObstacle::least(const Vec3& centre, const Vec3& half) const {
 }
 
 // In a cell the field is multilinear, so on the part of the box in it, it is least at a corner of that part;
-// in a bent one it is a distance, which changes by no more than the way.
+// in a bent one it is a distance, which changes by no more than the way; that to a convex solid is no smaller
+// than that to the plane between.
 double SdfObstacle::least_mesh(const Vec3& low, const Vec3& high) const {
   constexpr double kMostCells = 100;
   const Vec3 top = (bricks_ * kCells).cast<double>();
@@ -229,6 +236,17 @@ double SdfObstacle::least_mesh(const Vec3& low, const Vec3& high) const {
   const Eigen::Vector3i first = from.cwiseMax(0.0).cwiseMin(top).cast<int>(),
                         last = to.cwiseMax(0.0).cwiseMin(top - Vec3::Ones()).cast<int>();
   double least = band_;
+  const auto beyond_way = [&](const Vec3& place, double way) {
+    return surface_.closest(origin_ + voxel_ * place).distance - voxel_ * way;
+  };
+  std::optional<double> plane;
+  const auto beyond_plane = [&] {
+    if (plane) return *plane;
+    const Vec3 middle = (low + high) / 2;
+    const SurfacePoint found = surface_.closest(middle);
+    const Vec3 normal = gradient_at(found, middle);
+    return *(plane = found.distance - normal.cwiseAbs().dot(high - low) / 2);
+  };
   if ((last - first).minCoeff() < 0) return least;
   if ((last - first + Eigen::Vector3i::Ones()).cast<double>().prod() > kMostCells)
     return -std::numeric_limits<double>::infinity();
@@ -245,8 +263,9 @@ double SdfObstacle::least_mesh(const Vec3& low, const Vec3& high) const {
                    end = (to - cell.cast<double>()).cwiseMax(0.0).cwiseMin(1.0);
         const Brick& brick = filled_[brick_index_[at]];
         if (brick.bent[in.z() * kCells + in.y()] >> in.x() & 1) {
-          const Vec3 middle = origin_ + voxel_ * (cell.cast<double>() + (begin + end) / 2);
-          least = std::min(least, surface_.closest(middle).distance - voxel_ * (end - begin).norm() / 2);
+          least = std::min(least, surface_.convex() ? beyond_plane()
+                                                    : beyond_way(cell.cast<double>() + (begin + end) / 2,
+                                                                 (end - begin).norm() / 2));
         } else {
           double corners[8];
           brick.corners(in, corners);
