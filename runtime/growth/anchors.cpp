@@ -52,7 +52,8 @@ void Anchors::update(Plant& plant, double dt_growth) {
     spring.stiffness = stiffness * Mat3::Identity();
     spring.damping = parameters_.damping_time * spring.stiffness;
 
-    Vec3 held = record.on_solid;  // now; the spring acts at the moment of balance, between now and the step's end
+    Vec3 held =
+        record.on_solid;  // now; the spring acts at the moment of balance, between now and the step's end
     if (record.solid) {
       const Vec3 at_end = record.solid->to_world(record.on_solid);
       spring.target_velocity = record.solid->velocity_at(at_end);
@@ -65,8 +66,7 @@ void Anchors::update(Plant& plant, double dt_growth) {
       ++released_;
       continue;
     }
-    records_[kept] = record;
-    plant.anchors[kept] = spring;
+    if (kept < i) records_[kept] = record, plant.anchors[kept] = spring;
     ++kept;
   }
   records_.resize(kept);

@@ -70,9 +70,11 @@ GrowthReport Climber::grow(Plant& plant, std::span<const SdfObstacle* const> obs
   const Surroundings around{obstacles, to_sun.normalized(), seed_.y()};
   if (!germinated_) germinate(plant, around);
   if (plant.particles.empty()) return {.released = anchors_.released()};  // all of it was cut
-  stiffness_.clear();
-  for (const Particle& p : plant.particles)
-    stiffness_.push_back({p.joint.shear_stiffness, p.joint.bend_stiffness});
+  stiffness_.resize(plant.particles.size());
+  for (size_t i = 0; i < stiffness_.size(); ++i) {
+    const Joint& joint = plant.particles[i].joint;
+    stiffness_[i] = {joint.shear_stiffness, joint.bend_stiffness};
+  }
   const int parts = std::max(1, static_cast<int>(std::ceil(dt / kLongestStep - 1e-9)));
   for (int i = 0; i < parts; ++i) grow_once(plant, around, dt / parts);
   anchors_.update(plant, dt);
@@ -323,9 +325,11 @@ void Climber::recalibrate_changed(Plant& plant, double dt, GrowthReport& report)
     Calibrated now{.length = branch.length, .mass = mass, .base = base / branch.stiffness_scale};
     now.seen_length = now.length, now.seen_base = now.base;
     // A new node lengthens a shoot at once: that, too, is made good in steps.
-    double longer = std::max(0.0, std::log(now.length / last.seen_length));
+    double longer =
+        now.length == last.seen_length ? 0 : std::max(0.0, std::log(now.length / last.seen_length));
     if (branch.kind != DomainKind::Leaf) longer = std::min(longer, parameters_.elongation * dt / now.length);
-    const double grown = kStiffnessByLength * longer + std::abs(std::log(now.base / last.seen_base));
+    const double stiffer = now.base == last.seen_base ? 0 : std::abs(std::log(now.base / last.seen_base));
+    const double grown = kStiffnessByLength * longer + stiffer;
     last.seen_length = now.length, last.seen_base = now.base;
     // A relative change of a swinging branch's stiffness, times (ωΔt)², is what its tip's velocity jumps by.
     const double phase = 2 * kPi * branch.material.frequency * plant.scheme.dt,

@@ -92,17 +92,32 @@ GeneralizedAlpha method_of(const TimeScheme& scheme, int finer, int finest) {
   return 4 * finer > finest ? GeneralizedAlpha::backward_euler() : GeneralizedAlpha(0);
 }
 
+// The same resistance in all directions, at the centre: wind, mostly.
+bool is_drag(const WorldSpring& spring) {
+  const Mat3& d = spring.damping;
+  return spring.stiffness.isZero(0) && spring.on_particle.isZero(0) && d(1, 1) == d(0, 0) &&
+         d(2, 2) == d(0, 0) && d(0, 1) == 0 && d(0, 2) == 0 && d(1, 0) == 0 && d(1, 2) == 0 && d(2, 0) == 0 &&
+         d(2, 1) == 0;
+}
+
 // A spring's force and stiffness into the block of its particle.
 void add_spring(const WorldSpring& spring, double position_rate, double velocity_rate, const double* pose,
                 double* block) {
   using Row = Eigen::Map<const Vec3>;
+  if (is_drag(spring)) {
+    const double damping = spring.damping(0, 0);
+    const Vec3 force = damping * (spring.target_velocity - Row(pose + 8));
+    for (const int diagonal : {0, 2, 5}) block[diagonal] += velocity_rate * damping;
+    for (int row = 0; row < 3; ++row) block[lanes::kBlockLoad + row] += force[row];
+    return;
+  }
   const Vec3 lever = Eigen::Map<const Quat>(pose + 4) * spring.on_particle;
   const Vec3 slip = Row(pose + 8) + Row(pose + 11).cross(lever) - spring.target_velocity;
   const Vec3 force = -spring.stiffness * (Row(pose) + lever - spring.target) - spring.damping * slip;
   const Mat3 S = position_rate * spring.stiffness + velocity_rate * spring.damping;
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column <= row; ++column) *block++ += S(row, column);
-  if (spring.on_particle.isZero(0)) {  // wind, mostly: at the centre it turns nothing
+  if (spring.on_particle.isZero(0)) {  // at the centre it turns nothing
     for (int row = 0; row < 3; ++row) block[15 + row] += force[row];
     return;
   }
@@ -283,7 +298,12 @@ void PlantStepper::add_loads(const Substep& step, const EliminationOrder::Part& 
       }
     }
   }
+  constexpr uint32_t kAhead = 4;
   for (uint32_t i = first_spring_[number]; i < first_spring_[number + 1]; ++i) {
+    if (i + kAhead < springs_.size()) {
+      const char* next = reinterpret_cast<const char*>(springs_[i + kAhead]);
+      for (size_t line = 0; line < sizeof(WorldSpring); line += 64) __builtin_prefetch(next + line);
+    }
     const uint32_t slot = order_.slot_of(springs_[i]->particle);
     add_spring(*springs_[i], step.position_rate, step.velocity_rate,
                view.pose + size_t{lanes::kPoseStride} * slot,

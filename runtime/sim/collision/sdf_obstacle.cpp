@@ -187,7 +187,8 @@ SdfSample SdfObstacle::sample_mesh(const Vec3& x) const {
   if ((place.array() < 0).any() || (place.array() >= top.array()).any() || !x.allFinite()) {
     return {(x - x.cwiseMax(low_).cwiseMin(high_)).norm(), Vec3::Zero()};
   }
-  const Eigen::Vector3i cell = place.cast<int>(), b = cell / kCells, in = cell - b * kCells;
+  const Eigen::Vector3i cell = place.cast<int>(), b = cell.unaryExpr([](int c) { return c >> kCellBits; }),
+                        in = cell - b * kCells;
   const size_t at = b.x() + size_t(bricks_.x()) * (b.y() + size_t(bricks_.y()) * b.z());
   if (brick_index_[at] < 0) {
     const Vec3 away = x - brick_centre(b);

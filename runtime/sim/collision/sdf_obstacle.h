@@ -82,7 +82,7 @@ class SdfObstacle {
   size_t bytes() const;
 
  private:
-  static constexpr int kCells = 8, kSide = kCells + 1, kSamples = kSide * kSide * kSide;
+  static constexpr int kCellBits = 3, kCells = 1 << kCellBits, kSide = kCells + 1, kSamples = kSide * kSide * kSide;
   struct Brick {
     std::array<float, kSamples> values;             // m, x fastest
     std::array<uint8_t, kCells* kCells> bent = {};  // bit x of [z * 8 + y]: ask Embree
