@@ -331,12 +331,12 @@ void Climber::recalibrate_changed(Plant& plant, double dt, GrowthReport& report)
     const double stiffer = now.base == last.seen_base ? 0 : std::abs(std::log(now.base / last.seen_base));
     const double grown = kStiffnessByLength * longer + stiffer;
     last.seen_length = now.length, last.seen_base = now.base;
-    // A relative change of a swinging branch's stiffness, times (ωΔt)², is what its tip's velocity jumps by.
-    const double phase = 2 * kPi * branch.material.frequency * plant.scheme.dt,
-                 unseen = kUnseenJump / (phase * phase);
     const bool its_turn = (i + count - next_settled_ % count) % count < turns;
     const double by = its_turn ? parameters_.settled : parameters_.recalibration;
     if (!last.differs(now, by)) continue;
+    // A relative change of a swinging branch's stiffness, times (ωΔt)², is what its tip's velocity jumps by.
+    const double phase = 2 * kPi * branch.material.frequency * plant.scheme.dt,
+                 unseen = kUnseenJump / (phase * phase);
     const double scaling = branch.material.mass_scaling;
     branch.material = evaluate(law_.group(branch.group), branch.length);
     const double heavier = branch.material.mass_scaling / scaling;

@@ -8,11 +8,8 @@ void carry_grown_weight(Plant& plant, const Vec3& gravity, std::vector<RestPose>
   for (size_t i = 0; i < rest.size(); ++i) {  // root to leaves
     const Particle& particle = plant.particles[i];
     const RestPose& from = particle.parent.valid() ? rest[particle.parent.index()] : world;
-    RestPose& self = rest[i];
-    self.orientation = from.orientation * particle.joint.rest;
-    self.position = from.position + from.orientation * particle.joint.on_parent -
-                    self.orientation * particle.joint.on_self;
-    self.force = self.moment = Vec3::Zero();
+    rest[i].orientation = from.orientation * particle.joint.rest;
+    rest[i].force = rest[i].moment = Vec3::Zero();
   }
   for (size_t i = rest.size(); i-- > 0;) {
     Particle& particle = plant.particles[i];

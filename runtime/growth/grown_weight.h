@@ -5,9 +5,8 @@
 
 namespace liana {
 
-/// Where a particle is when all joints are at their rest angles, and the weight beyond it.
+/// How a particle is turned when all joints are at their rest angles, and the weight beyond it.
 struct RestPose {
-  Vec3 position = Vec3::Zero();  ///< m
   Quat orientation = Quat::Identity();
   Vec3 force = Vec3::Zero();   ///< N
   Vec3 moment = Vec3::Zero();  ///< N·m, about its centre

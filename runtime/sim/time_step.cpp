@@ -1,6 +1,7 @@
 #include "runtime/sim/time_step.h"
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 
 #include "mesher/base/parallel.h"
@@ -51,7 +52,8 @@ struct Workspace {
   static void grow(auto& numbers, size_t size) {
     if (numbers.size() < size) numbers.resize(size);
   }
-  void prepare(const EliminationOrder& order, const Vec3& world_position) {
+  // stale: the parts that will be eliminated; empty for all.
+  void prepare(const EliminationOrder& order, const Vec3& world_position, std::span<const uint8_t> stale) {
     grow(pose, size_t{lanes::kPoseStride} * order.pose_slots());
     grow(block, size_t{lanes::kBlockStride} * order.block_slots());
     // The world: unturned, at rest. What it is handed is not looked at.
@@ -60,8 +62,11 @@ struct Workspace {
     Eigen::Map<Vec3>{world} = world_position;
     world[7] = 1;
     std::fill_n(block_of(order.world_slot()), lanes::kBlockStride, 0.0);
-    for (const EliminationOrder::Handover& h : order.handovers())
-      std::fill_n(block_of(h.from), lanes::kBlockStride, 0.0);
+    for (size_t part = 0; part < order.parts().size(); ++part) {
+      if (!stale.empty() && !stale[part]) continue;
+      for (const EliminationOrder::Handover& h : order.handovers_of(part, part + 1))
+        std::fill_n(block_of(h.from), lanes::kBlockStride, 0.0);
+    }
   }
   double* block_of(uint32_t slot) { return &block[size_t{lanes::kBlockStride} * slot]; }
   void copy_top_poses(const Workspace& from, const EliminationOrder& order) {
@@ -70,6 +75,9 @@ struct Workspace {
 };
 constexpr unsigned kMostShares = 16;
 thread_local std::array<Workspace, kMostShares> workspaces;
+// The step whose records and handovers they hold, when all of it was one elimination.
+thread_local uint64_t held_step = 0;
+std::atomic<uint64_t> last_step{0};
 
 // Calls work(share) for each, on as many threads.
 template <class Work>
@@ -170,15 +178,22 @@ struct PlantStepper::Substep {
   }
 };
 
-StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
-                              std::span<const WorldSpring> transient, const StepOptions& options) noexcept {
+StepReport PlantStepper::step_from(Plant& plant, std::span<const Wrench> external,
+                                   std::span<const WorldSpring> transient, size_t known,
+                                   const StepOptions& options) noexcept {
   if (plant.scheme.solver == Solver::ShapeMatching)
     return shape_matching_.step(plant, external, transient, options);
   const size_t count = plant.particles.size();
+  const bool some = known > 0 && kept_ > 0 && kept_ == held_step && order_.particles() == count;
+  kept_ = held_step = 0;
   order_.update(plant.particles, false);
   now_.resize(count);
   next_.resize(count);
   sort_springs(plant, transient);
+  stale_.assign(order_.parts().size(), 0);
+  for (const WorldSpring& spring :
+       transient.subspan(some ? std::min(known, transient.size()) : transient.size()))
+    if (const uint32_t part = order_.part_of(spring.particle); part < stale_.size()) stale_[part] = 1;
   StepReport report;
   // A support that jumped is carried to its new place within the step, when the step has to be redone.
   const Vec3 teleported = off_support(plant);
@@ -196,11 +211,11 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
       if (i > 0) now_.swap(next_);
       const std::vector<Motion>& from = i == 0 ? plant.motion : now_;
       if (finer > 1) part.world = (1 - (i + 1.0) / parts) * teleported;
-      Outcome outcome = substep(plant, part, from, next_, report.gap);
+      Outcome outcome = substep(plant, part, from, next_, some && report.solves == 0, report.gap);
       if (outcome == Outcome::TreeChanged) {
         order_.update(plant.particles, true);
         sort_springs(plant, transient);
-        outcome = substep(plant, part, from, next_, report.gap);
+        outcome = substep(plant, part, from, next_, false, report.gap);
       }
       report.finite = outcome == Outcome::Finite;
       ++report.solves;
@@ -210,6 +225,7 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
     ++report.redone;
   }
 
+  if (report.solves == 1 && report.finite) kept_ = held_step = ++last_step;
   if (report.finite) {
     plant.motion.swap(next_);
     if (!report.gap_held && options.most_redo_substeps > 1)
@@ -223,12 +239,13 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
 
 PlantStepper::Outcome PlantStepper::substep(const Plant& plant, const Substep& step,
                                             const std::vector<Motion>& from, std::vector<Motion>& to,
-                                            double& gap) noexcept {
+                                            bool some, double& gap) noexcept {
   const std::span<const EliminationOrder::Part> parts = order_.parts();
   const EliminationOrder::Part top = order_.top();
   const unsigned shares = parts.empty() ? 1 : std::clamp(step.threads, 1u, kMostShares);
   const std::span<Workspace> spaces(workspaces.data(), shares);  // of this thread, whoever uses them
-  for (Workspace& space : spaces) space.prepare(order_, step.world);
+  const std::span<const uint8_t> stale = some ? std::span<const uint8_t>(stale_) : std::span<const uint8_t>();
+  for (Workspace& space : spaces) space.prepare(order_, step.world, stale);
   Workspace& main = spaces[0];
   Workspace::grow(main.record, size_t{4 * lanes::kRecordLanes} * order_.packs().size());
   const lanes::StepView view = step.view(plant, from, to, order_, main);
@@ -257,6 +274,7 @@ PlantStepper::Outcome PlantStepper::substep(const Plant& plant, const Substep& s
   in_shares(shares, [&](unsigned share) {
     const lanes::StepView own = view_of(share);
     for (uint32_t k = first_of(share); k < first_of(share + 1); ++k) {
+      if (some && !stale[k]) continue;
       kernels_->predict(own, parts[k].first, parts[k].last);
       if (!order_.still_holds(plant.particles, parts[k])) return;
       add_loads(step, parts[k], k, own);

@@ -21,7 +21,7 @@ uint64_t new_state() {
 }
 
 /// Trilinear value and gradient (per voxel) inside a cell; f[x + 2y + 4z] at its corners, t in [0, 1]³.
-double interpolate(const double (&f)[8], const Vec3& t, Vec3& gradient) {
+inline double interpolate(const double (&f)[8], const Vec3& t, Vec3& gradient) {
   double along_x[4], step_x[4];
   for (int i = 0; i < 4; ++i) step_x[i] = f[2 * i + 1] - f[2 * i], along_x[i] = f[2 * i] + t.x() * step_x[i];
   const double near = along_x[0] + t.y() * (along_x[1] - along_x[0]);

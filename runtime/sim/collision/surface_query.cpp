@@ -76,23 +76,31 @@ struct Search {
   double limit;  // m², beyond which a triangle is of no use
 };
 
-bool visit(RTCPointQueryFunctionArguments* arguments) {
-  auto& search = *static_cast<Search*>(arguments->userPtr);
+constexpr size_t kFew = 24;  // triangles that are looked at faster than Embree finds out which
+
+// Whether it is nearer than the best one.
+bool consider(uint32_t triangle, Search& search) {
   const Mesh& mesh = search.surface->mesh();
-  const Triangle& t = mesh.triangles[arguments->primID];
-  const double height = (search.x - mesh.positions[t[0]]).dot(search.surface->face_normal(arguments->primID));
+  const Triangle& t = mesh.triangles[triangle];
+  const double height = (search.x - mesh.positions[t[0]]).dot(search.surface->face_normal(triangle));
   if (height * height > search.limit) return false;
   const TrianglePoint found =
       closest_on_triangle(search.x, mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]);
   // Ties go to the lowest triangle, so that the answer does not depend on the order of the search.
   if (found.squared_distance > search.best.squared_distance ||
-      (found.squared_distance == search.best.squared_distance && arguments->primID >= search.triangle))
+      (found.squared_distance == search.best.squared_distance && triangle >= search.triangle))
     return false;
   search.best = found;
-  search.triangle = arguments->primID;
+  search.triangle = triangle;
   search.limit = found.squared_distance * (1 + 1e-9);
+  return true;
+}
+
+bool visit(RTCPointQueryFunctionArguments* arguments) {
+  auto& search = *static_cast<Search*>(arguments->userPtr);
+  if (!consider(arguments->primID, search)) return false;
   arguments->query->radius =
-      static_cast<float>(std::sqrt(found.squared_distance) * (1 + 1e-6) + search.slack);
+      static_cast<float>(std::sqrt(search.best.squared_distance) * (1 + 1e-6) + search.slack);
   return true;
 }
 
@@ -119,15 +127,19 @@ SurfacePoint SurfaceQuery::closest(const Vec3& x, double within) const {
   Search search{&embree_->surface, x, slack, {}, Id<void>::kNone, reach * reach};
   search.best.squared_distance = std::numeric_limits<double>::infinity();
 
-  RTCPointQuery query;
-  query.x = static_cast<float>(local.x());
-  query.y = static_cast<float>(local.y());
-  query.z = static_cast<float>(local.z());
-  query.time = 0;
-  query.radius = static_cast<float>(reach);
-  RTCPointQueryContext context;
-  rtcInitPointQueryContext(&context);
-  rtcPointQuery(embree_->scene, &query, &context, visit, &search);
+  if (const size_t count = mesh().triangles.size(); count <= kFew) {
+    for (uint32_t i = 0; i < count; ++i) consider(i, search);
+  } else {
+    RTCPointQuery query;
+    query.x = static_cast<float>(local.x());
+    query.y = static_cast<float>(local.y());
+    query.z = static_cast<float>(local.z());
+    query.time = 0;
+    query.radius = static_cast<float>(reach);
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(embree_->scene, &query, &context, visit, &search);
+  }
   require(search.triangle != Id<void>::kNone, "no closest point within the promised distance");
 
   const double distance = std::sqrt(search.best.squared_distance);
