@@ -5,7 +5,6 @@
 
 #include "mesher/base/error.h"
 #include "runtime/growth/branching.h"
-#include "runtime/growth/grown_weight.h"
 #include "runtime/growth/light.h"
 #include "runtime/growth/thickening.h"
 #include "runtime/sim/joints.h"
