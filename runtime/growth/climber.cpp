@@ -315,13 +315,15 @@ void Climber::recalibrate_changed(Plant& plant, double dt, GrowthReport& report)
   const std::vector<double> carried = carried_masses(plant);
   calibrated_.resize(plant.branches.size());
   const size_t turns = plant.branches.size() / 100 + 1, count = plant.branches.size();
+  const size_t first_turn = next_settled_ % count;
+  branch_mass_.assign(count, 0);
+  for (size_t i = 0; i < plant.particles.size(); ++i)
+    branch_mass_[plant.particles[i].branch.index()] += plant.particles[i].mass + carried[i];
   for (size_t i = 0; i < plant.branches.size(); ++i) {
     Branch& branch = plant.branches[i];
-    double mass = 0;
-    for (const ParticleId p : branch.particles) mass += plant.particles[p.index()].mass + carried[p.index()];
     const double base = plant.particles[branch.particles.front().index()].joint.bend_stiffness.x();
     Calibrated& last = calibrated_[i];
-    Calibrated now{.length = branch.length, .mass = mass, .base = base / branch.stiffness_scale};
+    Calibrated now{.length = branch.length, .mass = branch_mass_[i], .base = base / branch.stiffness_scale};
     now.seen_length = now.length, now.seen_base = now.base;
     // A new node lengthens a shoot at once: that, too, is made good in steps.
     double longer =
@@ -330,7 +332,7 @@ void Climber::recalibrate_changed(Plant& plant, double dt, GrowthReport& report)
     const double stiffer = now.base == last.seen_base ? 0 : std::abs(std::log(now.base / last.seen_base));
     const double grown = kStiffnessByLength * longer + stiffer;
     last.seen_length = now.length, last.seen_base = now.base;
-    const bool its_turn = (i + count - next_settled_ % count) % count < turns;
+    const bool its_turn = (i < first_turn ? i + count : i) - first_turn < turns;
     const double by = its_turn ? parameters_.settled : parameters_.recalibration;
     if (!last.differs(now, by)) continue;
     // A relative change of a swinging branch's stiffness, times (ωΔt)², is what its tip's velocity jumps by.

@@ -87,6 +87,7 @@ class Climber {
   Crowding crowding_;
   std::vector<double> young_radius_, joint_length_;  // m, per particle
   std::vector<Calibrated> calibrated_;               // per branch
+  std::vector<double> branch_mass_;                  // kg, with what they carry
   struct ByJoint {
     Vec3 shear, bend;
   };

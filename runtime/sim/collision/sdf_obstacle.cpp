@@ -79,6 +79,7 @@ SdfObstacle::SdfObstacle(const Mesh& mesh, const SdfOptions& options)
                 "choose a larger voxel");
   bricks_ = count.cast<int>();
   origin_ = (low_ + high_) / 2 - count * (brick / 2);
+  top_ = (bricks_ * kCells).cast<double>();
 
   brick_index_.assign(bricks_.prod(), -1);
   centre_value_.resize(brick_index_.size());
@@ -183,12 +184,13 @@ SurfacePoint SdfObstacle::closest_point(const Vec3& x) const {
 
 SdfSample SdfObstacle::sample_mesh(const Vec3& x) const {
   const Vec3 place = (x - origin_) / voxel_;
-  const Vec3 top = (bricks_ * kCells).cast<double>();
-  if ((place.array() < 0).any() || (place.array() >= top.array()).any() || !x.allFinite()) {
-    return {(x - x.cwiseMax(low_).cwiseMin(high_)).norm(), Vec3::Zero()};
-  }
-  const Eigen::Vector3i cell = place.cast<int>(), b = cell.unaryExpr([](int c) { return c >> kCellBits; }),
-                        in = cell - b * kCells;
+  const bool in_grid = place.x() >= 0 && place.x() < top_.x() && place.y() >= 0 && place.y() < top_.y() &&
+                       place.z() >= 0 && place.z() < top_.z();
+  if (!in_grid) return {(x - x.cwiseMax(low_).cwiseMin(high_)).norm(), Vec3::Zero()};
+  const Eigen::Vector3i cell(static_cast<int>(place.x()), static_cast<int>(place.y()),
+                             static_cast<int>(place.z()));
+  const Eigen::Vector3i b(cell.x() >> kCellBits, cell.y() >> kCellBits, cell.z() >> kCellBits);
+  const Eigen::Vector3i in = cell - b * kCells;
   const size_t at = b.x() + size_t(bricks_.x()) * (b.y() + size_t(bricks_.y()) * b.z());
   if (brick_index_[at] < 0) {
     const Vec3 away = x - brick_centre(b);
@@ -230,12 +232,11 @@ double SdfObstacle::least(const Vec3& centre, const Vec3& half) const {
 // than that to the plane between.
 double SdfObstacle::least_mesh(const Vec3& low, const Vec3& high) const {
   constexpr double kMostCells = 100;
-  const Vec3 top = (bricks_ * kCells).cast<double>();
   const Vec3 from = (low - origin_) / voxel_, to = (high - origin_) / voxel_;
   // Beyond the grid nothing is nearer than the band.
   if (!from.allFinite() || !to.allFinite()) return -std::numeric_limits<double>::infinity();
-  const Eigen::Vector3i first = from.cwiseMax(0.0).cwiseMin(top).cast<int>(),
-                        last = to.cwiseMax(0.0).cwiseMin(top - Vec3::Ones()).cast<int>();
+  const Eigen::Vector3i first = from.cwiseMax(0.0).cwiseMin(top_).cast<int>(),
+                        last = to.cwiseMax(0.0).cwiseMin(top_ - Vec3::Ones()).cast<int>();
   double least = band_;
   const auto beyond_way = [&](const Vec3& place, double way) {
     return surface_.closest(origin_ + voxel_ * place).distance - voxel_ * way;

@@ -82,7 +82,8 @@ class SdfObstacle {
   size_t bytes() const;
 
  private:
-  static constexpr int kCellBits = 3, kCells = 1 << kCellBits, kSide = kCells + 1, kSamples = kSide * kSide * kSide;
+  static constexpr int kCellBits = 3, kCells = 1 << kCellBits, kSide = kCells + 1,
+                       kSamples = kSide * kSide * kSide;
   struct Brick {
     std::array<float, kSamples> values;             // m, x fastest
     std::array<uint8_t, kCells* kCells> bent = {};  // bit x of [z * 8 + y]: ask Embree
@@ -107,6 +108,7 @@ class SdfObstacle {
   Vec3 low_, high_, origin_;  // with the sheet's thickness
   double voxel_, band_;
   Eigen::Vector3i bricks_;            // number along each axis
+  Vec3 top_;                          // voxels along each axis
   std::vector<int32_t> brick_index_;  // into filled_, or -1
   std::vector<float> centre_value_;   // m, exact distance at the centre of each brick
   std::vector<Brick> filled_;
