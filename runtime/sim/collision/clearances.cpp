@@ -10,7 +10,7 @@ namespace {
 constexpr double kMostRoom = 0.03;   // m; below what any solid's band is
 constexpr double kLeastRoom = 5e-5;  // m, below which it is not worth remembering
 constexpr uint8_t kTryAgain = 8;     // calls
-constexpr double kRounding = 1e-10;  // m
+constexpr double kRounding = 1e-9;   // m
 
 /// Half of a box around a particle as probes see it, m: a stem is a cylinder, a blade has its width in the
 /// middle and none at its ends.
@@ -90,7 +90,7 @@ void Clearances::learn(const Plant& plant, size_t i, std::span<const SdfObstacle
     known.position = motion.position;
     known.orientation = motion.orientation;
     known.half = {particle.half_length, particle.half_width, particle.half_thickness};
-    known.least = least(motion.position, half + Vec3::Constant(room), solids);
+    known.least = least(motion.position, half + Vec3::Constant(room + kRounding), solids);
     if (known.least > 0) known.room = room;
   }
   if (known.room < 0) wait_[i] = kTryAgain;

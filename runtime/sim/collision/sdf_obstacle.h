@@ -50,8 +50,8 @@ class SdfObstacle {
   double distance(const Vec3& x) const { return sample(x).distance; }
   SdfSample sample(const Vec3& x) const;
 
-  /// No point of an upright box has a smaller distance(): m, or minus infinity where that takes too long to
-  /// find out. What is beyond 4 cm or the band may be reported as that.
+  /// m: no point of an upright box has a smaller distance(), if this is above zero. Otherwise that was not
+  /// found out. It is never above the band.
   double least(const Vec3& centre, const Vec3& half) const;
 
   /// Moves it. Scaling and shear belong into the mesh, where distances stay exact. All questions and answers
