@@ -74,6 +74,7 @@ class Climber {
   void finish_node(Plant& plant, size_t shoot, const Surroundings& around);
   void break_bud_below_cut(Plant& plant, size_t shoot, const Surroundings& around);
   void hold_on_again(Plant& plant, const Surroundings& around);
+  void note_stiffness(const Plant& plant);
   void keep_loads(Plant& plant, double dt);
   void recalibrate_changed(Plant& plant, double dt, GrowthReport& report);
 
@@ -87,11 +88,14 @@ class Climber {
   Crowding crowding_;
   std::vector<double> young_radius_, joint_length_;  // m, per particle
   std::vector<Calibrated> calibrated_;               // per branch
-  std::vector<double> branch_mass_;                  // kg, with what they carry
+  struct Found {
+    double mass, base;  // kg, with what it carries; N·m/rad of its first joint
+  };
+  std::vector<Found> found_;  // per branch, now
   struct ByJoint {
     Vec3 shear, bend;
   };
-  std::vector<ByJoint> stiffness_;  // N/m, N·m/rad, per particle, before the present call
+  std::vector<ByJoint> stiffness_;  // N/m, N·m/rad, per particle, as the last call left it
   std::vector<ByJoint> kept_;       // N, N·m, per particle
   HeldChain chain_;
   std::vector<RestPose> rest_;

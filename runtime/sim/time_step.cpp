@@ -181,8 +181,10 @@ struct PlantStepper::Substep {
 StepReport PlantStepper::step_from(Plant& plant, std::span<const Wrench> external,
                                    std::span<const WorldSpring> transient, size_t known,
                                    const StepOptions& options) noexcept {
-  if (plant.scheme.solver == Solver::ShapeMatching)
+  if (plant.scheme.solver == Solver::ShapeMatching) {
+    next_ = plant.motion;
     return shape_matching_.step(plant, external, transient, options);
+  }
   const size_t count = plant.particles.size();
   const bool some = known > 0 && kept_ > 0 && kept_ == held_step && order_.particles() == count;
   kept_ = held_step = 0;
@@ -232,6 +234,7 @@ StepReport PlantStepper::step_from(Plant& plant, std::span<const Wrench> externa
       report.reseated = reseat(plant, options.gap_limit);
     if (plant.anchors.empty() && transient.empty() && external.empty()) keep_angular_momentum(next_, plant);
   } else {
+    next_ = plant.motion;
     for (Motion& m : plant.motion) m = {.position = m.position, .orientation = m.orientation};
   }
   return report;

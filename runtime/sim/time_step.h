@@ -58,6 +58,10 @@ class PlantStepper {
     return step_from(plant, external, transient, known, options);
   }
 
+  /// The motion that the last step started from, and back to it.
+  const std::vector<Motion>& start() const { return next_; }
+  void take_back(Plant& plant) noexcept { plant.motion.swap(next_); }
+
   /// What the substep runs on; the fastest that this processor has. For tests and benchmarks.
   void use(const lanes::Kernels& kernels) { kernels_ = &kernels; }
 

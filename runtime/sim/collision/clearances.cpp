@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kMostRoom = 0.03;   // m; below what any solid's band is
 constexpr double kLeastRoom = 5e-5;  // m, below which it is not worth remembering
+constexpr double kFloat = 1e-6;      // more than a float is off
 constexpr uint8_t kTryAgain = 8;     // calls
 constexpr double kRounding = 1e-9;   // m
 
@@ -52,17 +53,21 @@ bool Clearances::clear(const Plant& plant, size_t i, double dt) const {
   if (known.room < 0) return false;
   const Particle& particle = plant.particles[i];
   const Motion& motion = plant.motion[i];
-  const double lever = lever_of(particle);
-  // A turn from q to q' moves a point at lever r by 2 r sin(θ/2), where |q - q'| = 2 sin(θ/4).
-  const double moved = (motion.position - known.position).norm() +
-                       2 * lever * (motion.orientation.coeffs() - known.orientation.coeffs()).norm() +
-                       std::abs(particle.half_length - known.half[0]) +
-                       std::abs(particle.half_width - known.half[1]) +
-                       std::abs(particle.half_thickness - known.half[2]);
-  if (dt == 0) return moved <= known.room;
-  const double travel = dt * (motion.velocity.norm() + lever * motion.angular_velocity.norm() +
+  const double way = moved(known, particle, motion);
+  if (dt == 0) return way <= known.room;
+  const double travel = dt * (motion.velocity.norm() + lever_of(particle) * motion.angular_velocity.norm() +
                               dt * motion.acceleration.norm() / 2);
-  return moved + travel <= known.room && 4 * travel <= known.least;
+  return way + travel <= known.room && 4 * travel <= known.least;
+}
+
+// A turn from q to q' moves a point at lever r by 2 r sin(θ/2), where |q - q'| = 2 sin(θ/4).
+double Clearances::moved(const Known& known, const Particle& particle, const Motion& motion) {
+  const auto& [x, y, z] = known.position;
+  const auto& [i, j, k, w] = known.orientation;
+  return (motion.position - Vec3(x, y, z)).norm() +
+         2 * lever_of(particle) * (motion.orientation.coeffs() - Eigen::Vector4d(i, j, k, w)).norm() +
+         std::abs(particle.half_length - known.half[0]) + std::abs(particle.half_width - known.half[1]) +
+         std::abs(particle.half_thickness - known.half[2]);
 }
 
 double Clearances::least(const Vec3& centre, const Vec3& half,
@@ -87,11 +92,16 @@ void Clearances::learn(const Plant& plant, size_t i, std::span<const SdfObstacle
   // Half of the room for where it may go, the other half for how fast it may come.
   const double room = std::min(kMostRoom, least(motion.position, half, solids) / 2);
   if (room >= kLeastRoom) {
-    known.position = motion.position;
-    known.orientation = motion.orientation;
-    known.half = {particle.half_length, particle.half_width, particle.half_thickness};
-    known.least = least(motion.position, half + Vec3::Constant(room + kRounding), solids);
-    if (known.least > 0) known.room = room;
+    const auto rounded = [](double number) { return static_cast<float>(number); };
+    const Vec3& x = motion.position;
+    const Quat& q = motion.orientation;
+    known.position = {rounded(x.x()), rounded(x.y()), rounded(x.z())};
+    known.orientation = {rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w())};
+    known.half = {rounded(particle.half_length), rounded(particle.half_width),
+                  rounded(particle.half_thickness)};
+    const double at_least = least(x, half + Vec3::Constant(room + kRounding), solids);
+    known.least = rounded(at_least * (1 - kFloat));
+    if (at_least > 0) known.room = rounded((room - moved(known, particle, motion)) * (1 - kFloat));
   }
   if (known.room < 0) wait_[i] = kTryAgain;
   known_[i] = known;

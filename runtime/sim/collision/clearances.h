@@ -34,11 +34,13 @@ class Clearances {
 
  private:
   struct Known {
-    Vec3 position = Vec3::Zero();  // m
-    Quat orientation = Quat::Identity();
-    std::array<double, 3> half{};  // m: length, width, thickness
-    double room = -1, least = 0;   // m
+    std::array<float, 3> position{};     // m; what these are off is taken from the room
+    std::array<float, 4> orientation{};  // x, y, z, w
+    std::array<float, 3> half{};         // m: length, width, thickness
+    float room = -1, least = 0;          // m
   };
+  /// No point of the particle is further from where it was.
+  static double moved(const Known& known, const Particle& particle, const Motion& motion);
   double least(const Vec3& centre, const Vec3& half, std::span<const SdfObstacle* const> solids) const;
 
   std::vector<Known> known_;
