@@ -52,8 +52,7 @@ void Anchors::update(Plant& plant, double dt_growth) {
     spring.stiffness = stiffness * Mat3::Identity();
     spring.damping = parameters_.damping_time * spring.stiffness;
 
-    Vec3 held =
-        record.on_solid;  // now; the spring acts at the moment of balance, between now and the step's end
+    Vec3 held = record.on_solid;  // now; the spring acts at the moment of balance, between now and the step's end
     if (record.solid) {
       const Vec3 at_end = record.solid->to_world(record.on_solid);
       spring.target_velocity = record.solid->velocity_at(at_end);
