@@ -9,8 +9,8 @@ void enclose(std::span<const FlatBox> boxes, uint32_t count, std::vector<FlatBox
   for (size_t i = 0; i < around.size(); ++i) {
     around[i] = boxes[i * count];
     for (size_t j = i * count + 1; j < std::min(boxes.size(), (i + 1) * count); ++j) {
-      around[i].low = around[i].low.cwiseMin(boxes[j].low);
-      around[i].high = around[i].high.cwiseMax(boxes[j].high);
+      around[i].low = around[i].low < boxes[j].low ? around[i].low : boxes[j].low;
+      around[i].high = around[i].high > boxes[j].high ? around[i].high : boxes[j].high;
     }
   }
 }

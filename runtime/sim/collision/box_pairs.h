@@ -11,11 +11,20 @@
 
 namespace liana {
 
-/// Axis-parallel, m. Single precision, rounded outwards by whoever makes it.
-struct FlatBox {
-  Eigen::Vector3f low, high;
-  bool meets(const FlatBox& other) const {
-    return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
+/// Axis-parallel, m. Single precision, rounded outwards by whoever makes it. The fourth number of each corner
+/// is nothing: four are compared at once.
+struct alignas(32) FlatBox {
+  using Corner = float __attribute__((vector_size(16)));
+  Corner low, high;
+  bool meets(const FlatBox& other) const { return every((low <= other.high) & (other.low <= high)); }
+  bool holds(const FlatBox& other) const { return every((low <= other.low) & (other.high <= high)); }
+
+ private:
+  using Answers = int32_t __attribute__((vector_size(16)));
+  static bool every(Answers yes) {
+    using Halves = int64_t __attribute__((vector_size(16)));
+    const auto halves = reinterpret_cast<Halves>(yes);
+    return (halves[0] & halves[1]) == -1;
   }
 };
 

@@ -52,9 +52,10 @@ void PlantContacts::look_at(std::span<const Plant* const> plants) {
       const auto radius = static_cast<float>(std::max(particle.half_width, particle.half_thickness));
       const double way = dt * (m.velocity.norm() + particle.half_length * m.angular_velocity.norm() +
                                dt / 2 * m.acceleration.norm());
-      const Eigen::Vector3f centre = m.position.cast<float>();
-      const Eigen::Vector3f half =
-          axis.cwiseAbs().cast<float>().array() + (radius + static_cast<float>(way) + kRounding);
+      const Eigen::Vector3f x = m.position.cast<float>(), along = axis.cwiseAbs().cast<float>();
+      const float around = radius + static_cast<float>(way) + kRounding;
+      const FlatBox::Corner centre{x.x(), x.y(), x.z(), 0},
+          half{along.x() + around, along.y() + around, along.z() + around, 0};
       bodies_.push_back({m.position, axis, radius, k, i});
       boxes_.push_back({centre - half, centre + half});
     }
@@ -68,8 +69,7 @@ void PlantContacts::find_moved(std::span<const Plant* const> plants) {
   moved_.assign(boxes_.size(), !same);
   moved_count_ = same ? 0 : boxes_.size();
   for (size_t i = 0; same && i < boxes_.size(); ++i) {
-    moved_[i] = (boxes_[i].low.array() < listed_[i].low.array()).any() ||
-                (boxes_[i].high.array() > listed_[i].high.array()).any();
+    moved_[i] = !listed_[i].holds(boxes_[i]);
     moved_count_ += moved_[i];
   }
   if (moved_count_ > boxes_.size() / 3) moved_.assign(boxes_.size(), 1), moved_count_ = boxes_.size();
@@ -125,7 +125,7 @@ void PlantContacts::list_moved(std::span<const Plant* const> plants) {
     // The box holds one step's way already; the list is to last for several.
     const double speed = plant.motion[bodies_[i].particle].velocity.norm();
     const auto more = static_cast<float>(options_.margin + options_.list_steps * plant.scheme.dt * speed);
-    listed_[i] = {boxes_[i].low.array() - more, boxes_[i].high.array() + more};
+    listed_[i] = {boxes_[i].low - more, boxes_[i].high + more};
   }
   tree_.fit(listed_);
 
