@@ -51,7 +51,8 @@ class Contacts {
  private:
   struct Made {
     uint64_t key;  // particle, probe, solid
-    Grip grip;
+    Vec3 normal = Vec3::Zero();
+    Grip grip = {};
     bool operator<(const Made& other) const { return key < other.key; }
   };
   void notice_new_particles(const Plant& plant, const CollisionScene& scene);
