@@ -48,11 +48,12 @@ void Anchors::update(Plant& plant, double dt_growth) {
     record.age += dt_growth;
     const double hard = std::min(1.0, record.age / parameters_.seconds_to_full);
     const double stiffness = parameters_.stiffness * hard * segment.half_width / young_radius_;
+    spring.stiffness = stiffness * Mat3::Identity();
+    spring.damping = parameters_.damping_time * spring.stiffness;
     // Where the axis is held: at the skin, which turns with the stem, a taut anchor would make it spin.
     const double off = segment.half_width + record.gap;
     spring.target = record.on_solid + off * record.normal;
-    Vec3 held =
-        spring.target;  // now; the spring acts at the moment of balance, between now and the step's end
+    Vec3 held = spring.target;  // now; the spring acts between now and the step's end
     if (record.solid) {
       const Vec3 at_end = record.solid->to_world(record.on_solid + off * record.normal);
       spring.target_velocity = record.solid->velocity_at(at_end);
@@ -64,8 +65,7 @@ void Anchors::update(Plant& plant, double dt_growth) {
       ++released_;
       continue;
     }
-    records_[kept] = record;
-    plant.anchors[kept] = spring;
+    if (kept < i) records_[kept] = record, plant.anchors[kept] = spring;
     ++kept;
   }
   records_.resize(kept);

@@ -5,7 +5,6 @@
 
 #include "mesher/base/error.h"
 #include "runtime/growth/branching.h"
-#include "runtime/growth/grown_weight.h"
 #include "runtime/growth/light.h"
 #include "runtime/growth/thickening.h"
 #include "runtime/sim/joints.h"
@@ -70,9 +69,7 @@ GrowthReport Climber::grow(Plant& plant, std::span<const SdfObstacle* const> obs
   const Surroundings around{obstacles, to_sun.normalized(), seed_.y()};
   if (!germinated_) germinate(plant, around);
   if (plant.particles.empty()) return {.released = anchors_.released()};  // all of it was cut
-  stiffness_.clear();
-  for (const Particle& p : plant.particles)
-    stiffness_.push_back({p.joint.shear_stiffness, p.joint.bend_stiffness});
+  note_stiffness(plant);
   const int parts = std::max(1, static_cast<int>(std::ceil(dt / kLongestStep - 1e-9)));
   for (int i = 0; i < parts; ++i) grow_once(plant, around, dt / parts);
   anchors_.update(plant, dt);
@@ -237,6 +234,7 @@ void Climber::follow(const TopologyChange& change) {
   };
   keep(young_radius_, change.particles);
   keep(joint_length_, change.particles);
+  keep(stiffness_, change.particles);
   keep(kept_, change.particles);
   keep(calibrated_, change.branches);
 }
@@ -284,6 +282,13 @@ void Climber::mark_growing(const Plant& plant, std::vector<uint8_t>& growing) co
   leaves_.mark_growing(plant, growing);
 }
 
+void Climber::note_stiffness(const Plant& plant) {
+  for (size_t i = stiffness_.size(); i < plant.particles.size(); ++i) {
+    const Joint& joint = plant.particles[i].joint;
+    stiffness_.push_back({joint.shear_stiffness, joint.bend_stiffness});
+  }
+}
+
 // A joint whose stiffness changed while it is bent exerts what it did, and forgets that slowly.
 void Climber::keep_loads(Plant& plant, double dt) {
   const auto pose = [&](ParticleId p) {
@@ -302,12 +307,14 @@ void Climber::keep_loads(Plant& plant, double dt) {
     if (!shear.isZero(0) || !bend.isZero(0)) {
       const JointStrain e = joint_strain(joint, particle.parent.valid() ? pose(particle.parent) : BodyPose(),
                                          pose(ParticleId(i)));
+      stiffness_[i] = {joint.shear_stiffness, joint.bend_stiffness};
       kept.shear += shear.cwiseProduct(e.shear);
       kept.bend += bend.cwiseProduct(e.bend.vector);
     }
     joint.rest_force += kept.shear;
     joint.rest_moment += kept.bend;
   }
+  note_stiffness(plant);
 }
 
 void Climber::recalibrate_changed(Plant& plant, double dt, GrowthReport& report) {
@@ -320,25 +327,33 @@ void Climber::recalibrate_changed(Plant& plant, double dt, GrowthReport& report)
   const std::vector<double> carried = carried_masses(plant);
   calibrated_.resize(plant.branches.size());
   const size_t turns = plant.branches.size() / 100 + 1, count = plant.branches.size();
+  const size_t first_turn = next_settled_ % count;
+  found_.assign(count, {-1, 0});
+  for (size_t i = 0; i < plant.particles.size(); ++i) {
+    const Particle& particle = plant.particles[i];
+    Found& found = found_[particle.branch.index()];
+    if (found.mass < 0) found = {0, particle.joint.bend_stiffness.x()};  // its first
+    found.mass += particle.mass + carried[i];
+  }
   for (size_t i = 0; i < plant.branches.size(); ++i) {
     Branch& branch = plant.branches[i];
-    double mass = 0;
-    for (const ParticleId p : branch.particles) mass += plant.particles[p.index()].mass + carried[p.index()];
-    const double base = plant.particles[branch.particles.front().index()].joint.bend_stiffness.x();
     Calibrated& last = calibrated_[i];
-    Calibrated now{.length = branch.length, .mass = mass, .base = base / branch.stiffness_scale};
+    Calibrated now{
+        .length = branch.length, .mass = found_[i].mass, .base = found_[i].base / branch.stiffness_scale};
     now.seen_length = now.length, now.seen_base = now.base;
     // A new node lengthens a shoot at once: that, too, is made good in steps.
-    double longer = std::max(0.0, std::log(now.length / last.seen_length));
+    double longer =
+        now.length == last.seen_length ? 0 : std::max(0.0, std::log(now.length / last.seen_length));
     if (branch.kind != DomainKind::Leaf) longer = std::min(longer, parameters_.elongation * dt / now.length);
-    const double grown = kStiffnessByLength * longer + std::abs(std::log(now.base / last.seen_base));
+    const double stiffer = now.base == last.seen_base ? 0 : std::abs(std::log(now.base / last.seen_base));
+    const double grown = kStiffnessByLength * longer + stiffer;
     last.seen_length = now.length, last.seen_base = now.base;
+    const bool its_turn = (i < first_turn ? i + count : i) - first_turn < turns;
+    const double by = its_turn ? parameters_.settled : parameters_.recalibration;
+    if (!last.differs(now, by)) continue;
     // A relative change of a swinging branch's stiffness, times (ωΔt)², is what its tip's velocity jumps by.
     const double phase = 2 * kPi * branch.material.frequency * plant.scheme.dt,
                  unseen = kUnseenJump / (phase * phase);
-    const bool its_turn = (i + count - next_settled_ % count) % count < turns;
-    const double by = its_turn ? parameters_.settled : parameters_.recalibration;
-    if (!last.differs(now, by)) continue;
     const double scaling = branch.material.mass_scaling;
     branch.material = evaluate(law_.group(branch.group), branch.length);
     const double heavier = branch.material.mass_scaling / scaling;

@@ -9,6 +9,7 @@
 #include "materials/law/species_law.h"
 #include "runtime/growth/anchors.h"
 #include "runtime/growth/crowding.h"
+#include "runtime/growth/grown_weight.h"
 #include "runtime/growth/leaves.h"
 #include "runtime/growth/segments.h"
 #include "runtime/growth/shoot_growth.h"
@@ -75,6 +76,7 @@ class Climber {
   void finish_node(Plant& plant, size_t shoot, const Surroundings& around);
   void break_bud_below_cut(Plant& plant, size_t shoot, const Surroundings& around);
   void hold_on_again(Plant& plant, const Surroundings& around);
+  void note_stiffness(const Plant& plant);
   void keep_loads(Plant& plant, double dt);
   void recalibrate_changed(Plant& plant, double dt, GrowthReport& report);
 
@@ -88,13 +90,17 @@ class Climber {
   Crowding crowding_;
   std::vector<double> young_radius_, joint_length_;  // m, per particle
   std::vector<Calibrated> calibrated_;               // per branch
+  struct Found {
+    double mass, base;  // kg, with what it carries; N·m/rad of its first joint
+  };
+  std::vector<Found> found_;  // per branch, now
   struct ByJoint {
     Vec3 shear, bend;
   };
-  std::vector<ByJoint> stiffness_;  // N/m, N·m/rad, per particle, before the present call
+  std::vector<ByJoint> stiffness_;  // N/m, N·m/rad, per particle, as the last call left it
   std::vector<ByJoint> kept_;       // N, N·m, per particle
   HeldChain chain_;
-  std::vector<Motion> rest_;
+  std::vector<RestPose> rest_;
   bool germinated_ = false;
   size_t next_hold_ = 0;        // particle looked at next for a new anchor
   size_t next_settled_ = 0;     // branch whose turn to be calibrated finely comes next

@@ -2,29 +2,27 @@
 
 namespace liana {
 
-void carry_grown_weight(Plant& plant, const Vec3& gravity, std::vector<Motion>& rest) {
-  // Rest poses, root to leaves; velocity and angular velocity hold the weight beyond a particle and its
-  // moment.
-  rest.assign(plant.particles.size(), Motion());
-  for (size_t i = 0; i < rest.size(); ++i) {
+void carry_grown_weight(Plant& plant, const Vec3& gravity, std::vector<RestPose>& rest) {
+  const RestPose world;
+  rest.resize(plant.particles.size());
+  for (size_t i = 0; i < rest.size(); ++i) {  // root to leaves
     const Particle& particle = plant.particles[i];
-    const Motion from = particle.parent.valid() ? rest[particle.parent.index()] : Motion();
+    const RestPose& from = particle.parent.valid() ? rest[particle.parent.index()] : world;
     rest[i].orientation = from.orientation * particle.joint.rest;
-    rest[i].position = from.position + from.orientation * particle.joint.on_parent -
-                       rest[i].orientation * particle.joint.on_self;
+    rest[i].force = rest[i].moment = Vec3::Zero();
   }
   for (size_t i = rest.size(); i-- > 0;) {
     Particle& particle = plant.particles[i];
-    Vec3 &force = rest[i].velocity, &moment = rest[i].angular_velocity;
+    Vec3 &force = rest[i].force, &moment = rest[i].moment;
     force += particle.mass * gravity;
     const Quat to_joint = rest[i].orientation.conjugate();
     const Vec3 at_joint = moment - (rest[i].orientation * particle.joint.on_self).cross(force);
     particle.joint.rest_force = to_joint * -force;
     particle.joint.rest_moment = to_joint * -at_joint;
     if (!particle.parent.valid()) continue;
-    Motion& parent = rest[particle.parent.index()];
-    parent.velocity += force;
-    parent.angular_velocity += at_joint + (parent.orientation * particle.joint.on_parent).cross(force);
+    RestPose& parent = rest[particle.parent.index()];
+    parent.force += force;
+    parent.moment += at_joint + (parent.orientation * particle.joint.on_parent).cross(force);
   }
 }
 

@@ -5,9 +5,16 @@
 
 namespace liana {
 
+/// How a particle is turned when all joints are at their rest angles, and the weight beyond it.
+struct RestPose {
+  Quat orientation = Quat::Identity();
+  Vec3 force = Vec3::Zero();   ///< N
+  Vec3 moment = Vec3::Zero();  ///< N·m, about its centre
+};
+
 /// Sets every joint's rest load to the weight beyond it, in the plant's rest pose (all joints at their rest
 /// angles), whatever its present one: swaying, pushed or pulled plants come back to where they grew. Anchors
 /// carry nothing at rest. gravity in m/s². `rest` is working memory.
-void carry_grown_weight(Plant& plant, const Vec3& gravity, std::vector<Motion>& rest);
+void carry_grown_weight(Plant& plant, const Vec3& gravity, std::vector<RestPose>& rest);
 
 }  // namespace liana

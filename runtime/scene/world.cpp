@@ -188,12 +188,14 @@ void World::step() {
   start_events();
   lead_grabs();
   move_obstacles();
-  // The air and other plants meet all plants at once, between their growth and their steps.
-  parallel_for(inhabitants_.size(), threads_, [&](size_t i, unsigned) {
+  const auto prepare = [&](size_t i) {
     inhabitants_[i]->springs.clear();
     pluck(i);
     grow(*inhabitants_[i]);
-  });
+  };
+  // The air and other plants meet all plants at once, between their growth and their steps.
+  const bool meet = scene_.plant_contacts || wind_.has_air();
+  if (meet) parallel_for(inhabitants_.size(), threads_, [&](size_t i, unsigned) { prepare(i); });
   if (scene_.plant_contacts) {
     all_plants_.clear();
     all_springs_.clear();
@@ -216,7 +218,10 @@ void World::step() {
       }));
   const unsigned all = threads_ > 0 ? threads_ : default_thread_count();
   const unsigned share = std::max(1u, all / std::max(1u, large));
-  parallel_for(inhabitants_.size(), threads_, [&](size_t i, unsigned) { step_inhabitant(i, share); });
+  parallel_for(inhabitants_.size(), threads_, [&](size_t i, unsigned) {
+    if (!meet) prepare(i);
+    step_inhabitant(i, share);
+  });
   if (wind_.has_air()) wind_.react(in_wind_);
   break_what_is_overloaded();
   remove_parts();

@@ -1,6 +1,7 @@
 #include "runtime/sim/time_step.h"
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 
 #include "mesher/base/parallel.h"
@@ -51,7 +52,8 @@ struct Workspace {
   static void grow(auto& numbers, size_t size) {
     if (numbers.size() < size) numbers.resize(size);
   }
-  void prepare(const EliminationOrder& order, const Vec3& world_position) {
+  // stale: the parts that will be eliminated; empty for all.
+  void prepare(const EliminationOrder& order, const Vec3& world_position, std::span<const uint8_t> stale) {
     grow(pose, size_t{lanes::kPoseStride} * order.pose_slots());
     grow(block, size_t{lanes::kBlockStride} * order.block_slots());
     // The world: unturned, at rest. What it is handed is not looked at.
@@ -60,8 +62,11 @@ struct Workspace {
     Eigen::Map<Vec3>{world} = world_position;
     world[7] = 1;
     std::fill_n(block_of(order.world_slot()), lanes::kBlockStride, 0.0);
-    for (const EliminationOrder::Handover& h : order.handovers())
-      std::fill_n(block_of(h.from), lanes::kBlockStride, 0.0);
+    for (size_t part = 0; part < order.parts().size(); ++part) {
+      if (!stale.empty() && !stale[part]) continue;
+      for (const EliminationOrder::Handover& h : order.handovers_of(part, part + 1))
+        std::fill_n(block_of(h.from), lanes::kBlockStride, 0.0);
+    }
   }
   double* block_of(uint32_t slot) { return &block[size_t{lanes::kBlockStride} * slot]; }
   void copy_top_poses(const Workspace& from, const EliminationOrder& order) {
@@ -70,6 +75,9 @@ struct Workspace {
 };
 constexpr unsigned kMostShares = 16;
 thread_local std::array<Workspace, kMostShares> workspaces;
+// The step whose records and handovers they hold, when all of it was one elimination.
+thread_local uint64_t held_step = 0;
+std::atomic<uint64_t> last_step{0};
 
 // Calls work(share) for each, on as many threads.
 template <class Work>
@@ -92,17 +100,32 @@ GeneralizedAlpha method_of(const TimeScheme& scheme, int finer, int finest) {
   return 4 * finer > finest ? GeneralizedAlpha::backward_euler() : GeneralizedAlpha(0);
 }
 
+// The same resistance in all directions, at the centre: wind, mostly.
+bool is_drag(const WorldSpring& spring) {
+  const Mat3& d = spring.damping;
+  return spring.stiffness.isZero(0) && spring.on_particle.isZero(0) && d(1, 1) == d(0, 0) &&
+         d(2, 2) == d(0, 0) && d(0, 1) == 0 && d(0, 2) == 0 && d(1, 0) == 0 && d(1, 2) == 0 && d(2, 0) == 0 &&
+         d(2, 1) == 0;
+}
+
 // A spring's force and stiffness into the block of its particle.
 void add_spring(const WorldSpring& spring, double position_rate, double velocity_rate, const double* pose,
                 double* block) {
   using Row = Eigen::Map<const Vec3>;
+  if (is_drag(spring)) {
+    const double damping = spring.damping(0, 0);
+    const Vec3 force = damping * (spring.target_velocity - Row(pose + 8));
+    for (const int diagonal : {0, 2, 5}) block[diagonal] += velocity_rate * damping;
+    for (int row = 0; row < 3; ++row) block[lanes::kBlockLoad + row] += force[row];
+    return;
+  }
   const Vec3 lever = Eigen::Map<const Quat>(pose + 4) * spring.on_particle;
   const Vec3 slip = Row(pose + 8) + Row(pose + 11).cross(lever) - spring.target_velocity;
   const Vec3 force = -spring.stiffness * (Row(pose) + lever - spring.target) - spring.damping * slip;
   const Mat3 S = position_rate * spring.stiffness + velocity_rate * spring.damping;
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column <= row; ++column) *block++ += S(row, column);
-  if (spring.on_particle.isZero(0)) {  // wind, mostly: at the centre it turns nothing
+  if (spring.on_particle.isZero(0)) {  // at the centre it turns nothing
     for (int row = 0; row < 3; ++row) block[15 + row] += force[row];
     return;
   }
@@ -155,15 +178,24 @@ struct PlantStepper::Substep {
   }
 };
 
-StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
-                              std::span<const WorldSpring> transient, const StepOptions& options) noexcept {
-  if (plant.scheme.solver == Solver::ShapeMatching)
+StepReport PlantStepper::step_from(Plant& plant, std::span<const Wrench> external,
+                                   std::span<const WorldSpring> transient, size_t known,
+                                   const StepOptions& options) noexcept {
+  if (plant.scheme.solver == Solver::ShapeMatching) {
+    next_ = plant.motion;
     return shape_matching_.step(plant, external, transient, options);
+  }
   const size_t count = plant.particles.size();
+  const bool some = known > 0 && kept_ > 0 && kept_ == held_step && order_.particles() == count;
+  kept_ = held_step = 0;
   order_.update(plant.particles, false);
   now_.resize(count);
   next_.resize(count);
   sort_springs(plant, transient);
+  stale_.assign(order_.parts().size(), 0);
+  for (const WorldSpring& spring :
+       transient.subspan(some ? std::min(known, transient.size()) : transient.size()))
+    if (const uint32_t part = order_.part_of(spring.particle); part < stale_.size()) stale_[part] = 1;
   StepReport report;
   // A support that jumped is carried to its new place within the step, when the step has to be redone.
   const Vec3 teleported = off_support(plant);
@@ -181,11 +213,11 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
       if (i > 0) now_.swap(next_);
       const std::vector<Motion>& from = i == 0 ? plant.motion : now_;
       if (finer > 1) part.world = (1 - (i + 1.0) / parts) * teleported;
-      Outcome outcome = substep(plant, part, from, next_, report.gap);
+      Outcome outcome = substep(plant, part, from, next_, some && report.solves == 0, report.gap);
       if (outcome == Outcome::TreeChanged) {
         order_.update(plant.particles, true);
         sort_springs(plant, transient);
-        outcome = substep(plant, part, from, next_, report.gap);
+        outcome = substep(plant, part, from, next_, false, report.gap);
       }
       report.finite = outcome == Outcome::Finite;
       ++report.solves;
@@ -195,12 +227,14 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
     ++report.redone;
   }
 
+  if (report.solves == 1 && report.finite) kept_ = held_step = ++last_step;
   if (report.finite) {
     plant.motion.swap(next_);
     if (!report.gap_held && options.most_redo_substeps > 1)
       report.reseated = reseat(plant, options.gap_limit);
     if (plant.anchors.empty() && transient.empty() && external.empty()) keep_angular_momentum(next_, plant);
   } else {
+    next_ = plant.motion;
     for (Motion& m : plant.motion) m = {.position = m.position, .orientation = m.orientation};
   }
   return report;
@@ -208,12 +242,13 @@ StepReport PlantStepper::step(Plant& plant, std::span<const Wrench> external,
 
 PlantStepper::Outcome PlantStepper::substep(const Plant& plant, const Substep& step,
                                             const std::vector<Motion>& from, std::vector<Motion>& to,
-                                            double& gap) noexcept {
+                                            bool some, double& gap) noexcept {
   const std::span<const EliminationOrder::Part> parts = order_.parts();
   const EliminationOrder::Part top = order_.top();
   const unsigned shares = parts.empty() ? 1 : std::clamp(step.threads, 1u, kMostShares);
   const std::span<Workspace> spaces(workspaces.data(), shares);  // of this thread, whoever uses them
-  for (Workspace& space : spaces) space.prepare(order_, step.world);
+  const std::span<const uint8_t> stale = some ? std::span<const uint8_t>(stale_) : std::span<const uint8_t>();
+  for (Workspace& space : spaces) space.prepare(order_, step.world, stale);
   Workspace& main = spaces[0];
   Workspace::grow(main.record, size_t{4 * lanes::kRecordLanes} * order_.packs().size());
   const lanes::StepView view = step.view(plant, from, to, order_, main);
@@ -242,6 +277,7 @@ PlantStepper::Outcome PlantStepper::substep(const Plant& plant, const Substep& s
   in_shares(shares, [&](unsigned share) {
     const lanes::StepView own = view_of(share);
     for (uint32_t k = first_of(share); k < first_of(share + 1); ++k) {
+      if (some && !stale[k]) continue;
       kernels_->predict(own, parts[k].first, parts[k].last);
       if (!order_.still_holds(plant.particles, parts[k])) return;
       add_loads(step, parts[k], k, own);
@@ -283,7 +319,12 @@ void PlantStepper::add_loads(const Substep& step, const EliminationOrder::Part& 
       }
     }
   }
+  constexpr uint32_t kAhead = 4;
   for (uint32_t i = first_spring_[number]; i < first_spring_[number + 1]; ++i) {
+    if (i + kAhead < springs_.size()) {
+      const char* next = reinterpret_cast<const char*>(springs_[i + kAhead]);
+      for (size_t line = 0; line < sizeof(WorldSpring); line += 64) __builtin_prefetch(next + line);
+    }
     const uint32_t slot = order_.slot_of(springs_[i]->particle);
     add_spring(*springs_[i], step.position_rate, step.velocity_rate,
                view.pose + size_t{lanes::kPoseStride} * slot,

@@ -46,7 +46,21 @@ class PlantStepper {
   /// external: one Wrench per particle, or empty. transient: contacts and grabs of this step, added to
   /// plant.anchors.
   StepReport step(Plant& plant, std::span<const Wrench> external, std::span<const WorldSpring> transient,
-                  const StepOptions& options) noexcept;
+                  const StepOptions& options) noexcept {
+    return step_from(plant, external, transient, 0, options);
+  }
+
+  /// Takes the step just taken again, from the same start, when `transient` only became longer: `known` of
+  /// them were there before. The same as step(), bit for bit; parts of the tree without new springs are not
+  /// eliminated again.
+  StepReport again(Plant& plant, std::span<const Wrench> external, std::span<const WorldSpring> transient,
+                   size_t known, const StepOptions& options) noexcept {
+    return step_from(plant, external, transient, known, options);
+  }
+
+  /// The motion that the last step started from, and back to it.
+  const std::vector<Motion>& start() const { return next_; }
+  void take_back(Plant& plant) noexcept { plant.motion.swap(next_); }
 
   /// What the substep runs on; the fastest that this processor has. For tests and benchmarks.
   void use(const lanes::Kernels& kernels) { kernels_ = &kernels; }
@@ -55,8 +69,10 @@ class PlantStepper {
   struct Substep;  // the numbers and loads that one substep is taken with
   enum class Outcome { Finite, NotFinite, TreeChanged };
 
+  StepReport step_from(Plant& plant, std::span<const Wrench> external, std::span<const WorldSpring> transient,
+                       size_t known, const StepOptions& options) noexcept;
   Outcome substep(const Plant& plant, const Substep& step, const std::vector<Motion>& from,
-                  std::vector<Motion>& to, double& gap) noexcept;
+                  std::vector<Motion>& to, bool some, double& gap) noexcept;
   void sort_springs(const Plant& plant, std::span<const WorldSpring> transient) noexcept;
   void add_loads(const Substep& step, const EliminationOrder::Part& part, uint32_t number,
                  const lanes::StepView& view) noexcept;
@@ -66,6 +82,8 @@ class PlantStepper {
   std::vector<const WorldSpring*> springs_;  // anchors and transient ones, by part
   std::vector<uint32_t> first_spring_;       // of each part and the top
   ShapeMatchingStepper shape_matching_;      // for plants of that scheme
+  std::vector<uint8_t> stale_;               // per part, when not all need be eliminated
+  uint64_t kept_ = 0;                        // the step whose elimination a thread's memory still holds
   std::vector<Motion> now_, next_;           // the plant's own state stays untouched until a step is accepted
 };
 

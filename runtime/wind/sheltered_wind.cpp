@@ -7,7 +7,11 @@ namespace liana {
 
 ShelteredWind::ShelteredWind(const WindField& open, std::vector<const SdfObstacle*> solids,
                              std::optional<double> ground_height, const ShelterParameters& parameters)
-    : open_(open), solids_(std::move(solids)), ground_height_(ground_height), parameters_(parameters) {}
+    : open_(open),
+      solids_(std::move(solids)),
+      ground_height_(ground_height),
+      parameters_(parameters),
+      outermost_(std::log1p(parameters.layer / parameters.roughness)) {}
 
 void ShelteredWind::slow(Vec3& wind, double distance, const Vec3& normal) const {
   const double layer = parameters_.layer, roughness = parameters_.roughness;
@@ -15,7 +19,7 @@ void ShelteredWind::slow(Vec3& wind, double distance, const Vec3& normal) const 
   const double inside = std::max(distance, 0.0);
   const double into = wind.dot(normal);
   if (into < 0) wind -= (1 - inside / layer) * into * normal;
-  wind *= std::log1p(inside / roughness) / std::log1p(layer / roughness);
+  wind *= std::log1p(inside / roughness) / outermost_;
 }
 
 Vec3 ShelteredWind::velocity(const Vec3& position, double time) const {

@@ -33,6 +33,7 @@ class ShelteredWind : public WindField {
   std::vector<const SdfObstacle*> solids_;
   std::optional<double> ground_height_;
   ShelterParameters parameters_;
+  double outermost_;  // ln(1 + δ/z₀)
 };
 
 }  // namespace liana

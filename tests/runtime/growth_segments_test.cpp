@@ -80,7 +80,7 @@ TEST(Segments, ANewOneMovesWithItsParent) {
 
 TEST(GrownWeight, APlantStandsAsItGrew) {
   Plant plant = chain();
-  std::vector<Motion> rest;
+  std::vector<RestPose> rest;
   carry_grown_weight(plant, {0, -9.81, 0}, rest);
   const std::vector<Motion> start = plant.motion;
   PlantStepper stepper;
@@ -93,7 +93,7 @@ TEST(GrownWeight, APushedPlantComesBackToWhereItGrew) {
   for (Particle& particle : plant.particles) particle.stiffness_damping = 0.05;
   const Vec3 grown = head_of(plant, ParticleId(2));
   PlantStepper stepper;
-  std::vector<Motion> rest;
+  std::vector<RestPose> rest;
   for (int i = 0; i < 400; ++i) {
     carry_grown_weight(plant, {0, -9.81, 0}, rest);  // each step, as growth does
     const std::vector<Wrench> push(3, {.force = {i < 100 ? 5.0 : 0.0, 0, 0}});

@@ -70,6 +70,39 @@ TEST(Lanes, TakeTheSameStepAsThePlainSolver) {
   }
 }
 
+TEST(Lanes, AStepTakenAgainWithMoreSpringsIsThatStep) {
+  for (const unsigned threads : {1u, 2u}) {
+    Storm storm(30, 0.2), other(30, 0.3);
+    PlantStepper stepper, elsewhere;
+    const StepOptions options{.most_redo_substeps = 1, .threads = threads};
+    for (int i = 0; i < 12; ++i) {
+      const std::vector<Motion> start = storm.plant.motion;
+      std::vector<WorldSpring> springs = storm.springs;
+      stepper.step(storm.plant, storm.wind, springs, options);
+      // Another plant in between takes the memory that the thread keeps.
+      if (i % 3 == 2) elsewhere.step(other.plant, other.wind, other.springs, options);
+      std::vector<uint64_t> hashes;
+      std::vector<double> gaps;
+      size_t known = springs.size();
+      for (int pass = 0; pass < 2; ++pass) {
+        known = springs.size();
+        const size_t at = (977 * static_cast<size_t>(i + 5 * pass) + 13) % storm.plant.particles.size();
+        springs.push_back({ParticleId(at), {}, start[at].position, 300 * Mat3::Identity(), Mat3::Identity()});
+        storm.plant.motion = start;
+        gaps.push_back(stepper.again(storm.plant, storm.wind, springs, known, options).gap);
+        hashes.push_back(state_hash(storm.plant));
+      }
+      for (size_t pass = 0; pass < 2; ++pass) {
+        Plant whole = storm.plant;
+        whole.motion = start;
+        const std::span<const WorldSpring> those(springs.data(), known + pass);
+        ASSERT_EQ(PlantStepper().step(whole, storm.wind, those, options).gap, gaps[pass]);
+        ASSERT_EQ(state_hash(whole), hashes[pass]) << "step " << i << ", pass " << pass;
+      }
+    }
+  }
+}
+
 TEST(Lanes, GiveTheSameBitsOnEveryProcessor) {
   std::vector<const lanes::Kernels*> copies{&lanes::portable_kernels()};
   for (const lanes::Kernels* copy : {lanes::avx2_kernels(), lanes::avx512_kernels()})

@@ -57,7 +57,7 @@ class BentClimber : public ::testing::Test {
 };
 
 Plant carrying(Plant plant) {
-  std::vector<Motion> work;
+  std::vector<RestPose> work;
   carry_grown_weight(plant, Vec3(0, -9.81, 0), work);
   return plant;
 }

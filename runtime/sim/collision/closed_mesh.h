@@ -30,6 +30,7 @@ class ClosedMesh {
   explicit ClosedMesh(const Mesh& mesh, bool may_be_open = false);
 
   const Mesh& mesh() const { return mesh_; }
+  const Vec3& face_normal(uint32_t triangle) const { return face_normals_[triangle]; }
   const Vec3& pseudonormal(uint32_t triangle, TriangleFeature feature) const;  ///< unit
 
  private:

@@ -9,17 +9,20 @@ ContactStepReport ContactStepper::step(Plant& plant, const CollisionScene& scene
                                        const StepOptions& options) {
   ContactStepReport report;
   report.collision_seconds += timed([&] { report.contacts = contacts_.gather(plant, scene, springs); });
-  before_.assign(plant.motion.begin(), plant.motion.end());
+  size_t known = 0;
   for (;;) {
-    report.step = stepper_.step(plant, external, springs, options);
+    report.step = known > 0 ? stepper_.again(plant, external, springs, known, options)
+                            : stepper_.step(plant, external, springs, options);
+    known = springs.size();
     report.solves += report.step.solves;
     if (++report.passes >= options_.most_passes) break;
     size_t missed = 0;
-    report.collision_seconds +=
-        timed([&] { missed = contacts_.gather_missed(plant, before_, scene, options_.tolerance, springs); });
+    report.collision_seconds += timed([&] {
+      missed = contacts_.gather_missed(plant, stepper_.start(), scene, options_.tolerance, springs);
+    });
     if (missed == 0) break;
     report.contacts.contacts += missed;
-    plant.motion.assign(before_.begin(), before_.end());
+    stepper_.take_back(plant);
   }
   return report;
 }

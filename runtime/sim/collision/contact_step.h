@@ -37,7 +37,6 @@ class ContactStepper {
   Contacts contacts_;
   ContactStepOptions options_;
   PlantStepper stepper_;
-  std::vector<Motion> before_;
 };
 
 }  // namespace liana

@@ -43,6 +43,7 @@ void Contacts::follow(const TopologyChange& change) {
   for (size_t i = 0; i < exempt_.size() && i < change.particles.size(); ++i)
     if (change.particles[i].valid()) exempt_[kept++] = exempt_[i];
   exempt_.resize(kept);
+  clearances_.follow(change);
   made_.clear();
 }
 
@@ -126,7 +127,7 @@ ContactReport Contacts::gather(const Plant& plant, const CollisionScene& scene,
   ContactReport report;
   report.exempt = std::count(exempt_.begin(), exempt_.end(), 1);
   auto last = before_.begin();
-  for (Gap found : probes_.look(plant, scene, dt)) {
+  for (Gap found : probes_.look(plant, scene, dt, 0, clearances())) {
     if (exempt_[found.particle]) continue;
     report.max_penetration = std::max(report.max_penetration, -found.gap);
     while (last != before_.end() && last->key < found.key) ++last;
@@ -158,7 +159,7 @@ size_t Contacts::gather_missed(const Plant& after, std::span<const Motion> befor
                                std::vector<WorldSpring>& springs) {
   const size_t known = made_.size();
   const double dt = after.scheme.dt;
-  for (Gap found : probes_.look(after, scene, 0)) {
+  for (Gap found : probes_.look(after, scene, 0, 0, clearances())) {
     if (exempt_[found.particle] || found.gap > -tolerance) continue;
     if (std::binary_search(made_.begin(), made_.begin() + known, Made{found.key})) continue;
     // The plane it is behind now, seen from where it started.

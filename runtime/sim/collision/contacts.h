@@ -15,10 +15,11 @@
 namespace liana {
 
 struct ContactOptions {
-  ContactFeel ground;             ///< obstacles have their own
-  double stiffness_ratio = 1000;  ///< normal stiffness over m/Δt²
-  double least_stiffness = 5e3;   ///< N/m
-  double push_out_speed = 0.3;    ///< m/s, at which what is deep inside is moved out
+  ContactFeel ground;               ///< obstacles have their own
+  double stiffness_ratio = 1000;    ///< normal stiffness over m/Δt²
+  double least_stiffness = 5e3;     ///< N/m
+  double push_out_speed = 0.3;      ///< m/s, at which what is deep inside is moved out
+  bool remember_clearances = true;  ///< false: looks at every particle in every step, to the same effect
 };
 
 struct ContactReport {
@@ -60,7 +61,10 @@ class Contacts {
                      Grip& grip) const;
 
   ContactOptions options_;
+  Clearances* clearances() { return options_.remember_clearances ? &clearances_ : nullptr; }
+
   Probes probes_;
+  Clearances clearances_;
   std::vector<uint8_t> exempt_;      // per particle
   std::vector<Made> made_, before_;  // sorted: the contacts that have a spring in this step; in the last one
 };

@@ -1,7 +1,9 @@
 #include "runtime/sim/collision/probes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace liana {
@@ -43,15 +45,24 @@ double travel_of(const Particle& particle, const Motion& motion, double dt) {
 
 }  // namespace
 
-const std::vector<Gap>& Probes::look(const Plant& plant, const CollisionScene& scene, double dt,
-                                     size_t first) {
+const std::vector<Gap>& Probes::look(const Plant& plant, const CollisionScene& scene, double dt, size_t first,
+                                     Clearances* clearances) {
   gaps_.clear();
+  if (clearances) clearances->begin(plant.particles.size(), scene.solids, scene.ground_height);
   for (size_t i = first; i < plant.particles.size(); i += kAtOnce)
-    look(plant, scene, dt, i, std::min(i + kAtOnce, plant.particles.size()));
+    look(plant, scene, dt, i, std::min(i + kAtOnce, plant.particles.size()), clearances);
   return gaps_;
 }
 
-void Probes::look(const Plant& plant, const CollisionScene& scene, double dt, size_t first, size_t last) {
+void Probes::look(const Plant& plant, const CollisionScene& scene, double dt, size_t first, size_t last,
+                  Clearances* clearances) {
+  std::array<bool, kAtOnce> clear{};
+  if (clearances) {
+    for (size_t i = first; i < last; ++i) clear[i - first] = clearances->clear(plant, i, dt);
+    const bool any_moves = std::any_of(scene.solids.begin(), scene.solids.end(),
+                                       [](const SdfObstacle* solid) { return solid->moves(); });
+    if (!any_moves && std::all_of(clear.begin(), clear.begin() + (last - first), std::identity())) return;
+  }
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (size_t i = first; i < last; ++i) {
     const Particle& particle = plant.particles[i];
@@ -77,8 +88,11 @@ void Probes::look(const Plant& plant, const CollisionScene& scene, double dt, si
   if (near_.empty() && !near_ground) return;
 
   for (size_t i = first; i < last; ++i) {
-    if (near_ground) look_at(plant, i, dt, nullptr, 0);
-    for (const auto& [number, solid] : near_) look_at(plant, i, dt, solid, number);
+    const bool is_clear = clear[i - first];
+    if (near_ground && !is_clear) look_at(plant, i, dt, nullptr, 0);
+    for (const auto& [number, solid] : near_)
+      if (!is_clear || solid->moves()) look_at(plant, i, dt, solid, number);
+    if (clearances && !is_clear && dt > 0) clearances->learn(plant, i, scene.solids);
   }
 }
 

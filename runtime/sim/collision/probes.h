@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/sim/collision/clearances.h"
 #include "runtime/sim/collision/sdf_obstacle.h"
 #include "runtime/sim/plant.h"
 
@@ -35,11 +36,15 @@ struct Gap {
 /// to a thin solid.
 class Probes {
  public:
-  const std::vector<Gap>& look(const Plant& plant, const CollisionScene& scene, double dt, size_t first = 0);
+  /// With `clearances`, particles that these know to be clear are passed over, and those that are not may be
+  /// learnt.
+  const std::vector<Gap>& look(const Plant& plant, const CollisionScene& scene, double dt, size_t first = 0,
+                               Clearances* clearances = nullptr);
 
  private:
   class View;
-  void look(const Plant& plant, const CollisionScene& scene, double dt, size_t first, size_t last);
+  void look(const Plant& plant, const CollisionScene& scene, double dt, size_t first, size_t last,
+            Clearances* clearances);
   /// Whether a point is in the ground or in one of near_.
   bool inside(const Vec3& x, std::optional<const SdfObstacle*> without = {}) const;
   bool lead_out(const Plant& plant, Gap& gap) const;

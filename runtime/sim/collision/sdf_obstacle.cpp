@@ -3,7 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <optional>
 
 #include "mesher/base/error.h"
 #include "mesher/base/parallel.h"
@@ -13,8 +15,13 @@ namespace {
 
 constexpr double kLeastBand = 4e-2;  // m
 
+uint64_t new_state() {
+  static std::atomic<uint64_t> last{0};
+  return ++last;
+}
+
 /// Trilinear value and gradient (per voxel) inside a cell; f[x + 2y + 4z] at its corners, t in [0, 1]³.
-double interpolate(const double (&f)[8], const Vec3& t, Vec3& gradient) {
+inline double interpolate(const double (&f)[8], const Vec3& t, Vec3& gradient) {
   double along_x[4], step_x[4];
   for (int i = 0; i < 4; ++i) step_x[i] = f[2 * i + 1] - f[2 * i], along_x[i] = f[2 * i] + t.x() * step_x[i];
   const double near = along_x[0] + t.y() * (along_x[1] - along_x[0]);
@@ -52,7 +59,7 @@ double geometric_voxel(const Mesh& mesh, double sheet) {
 }
 
 SdfObstacle::SdfObstacle(const Mesh& mesh, const SdfOptions& options)
-    : surface_(mesh, options.sheet), half_sheet_(options.sheet / 2) {
+    : surface_(mesh, options.sheet), state_(new_state()), half_sheet_(options.sheet / 2) {
   low_ = high_ = surface_.mesh().positions.front();
   for (const Vec3& p : surface_.mesh().positions) low_ = low_.cwiseMin(p), high_ = high_.cwiseMax(p);
   low_.array() -= half_sheet_;
@@ -72,6 +79,7 @@ SdfObstacle::SdfObstacle(const Mesh& mesh, const SdfOptions& options)
                 "choose a larger voxel");
   bricks_ = count.cast<int>();
   origin_ = (low_ + high_) / 2 - count * (brick / 2);
+  top_ = (bricks_ * kCells).cast<double>();
 
   brick_index_.assign(bricks_.prod(), -1);
   centre_value_.resize(brick_index_.size());
@@ -147,6 +155,8 @@ void SdfObstacle::mark_bent(Brick& brick, const Vec3& corner, const std::vector<
 }
 
 void SdfObstacle::place(const ObstaclePose& pose) {
+  if (!placed_ || pose.rotation.coeffs() != pose_.rotation.coeffs() || pose.position != pose_.position)
+    state_ = new_state();
   pose_ = pose;
   back_ = pose.rotation.toRotationMatrix().transpose();
   placed_ = true;
@@ -174,11 +184,13 @@ SurfacePoint SdfObstacle::closest_point(const Vec3& x) const {
 
 SdfSample SdfObstacle::sample_mesh(const Vec3& x) const {
   const Vec3 place = (x - origin_) / voxel_;
-  const Vec3 top = (bricks_ * kCells).cast<double>();
-  if ((place.array() < 0).any() || (place.array() >= top.array()).any() || !x.allFinite()) {
-    return {(x - x.cwiseMax(low_).cwiseMin(high_)).norm(), Vec3::Zero()};
-  }
-  const Eigen::Vector3i cell = place.cast<int>(), b = cell / kCells, in = cell - b * kCells;
+  const bool in_grid = place.x() >= 0 && place.x() < top_.x() && place.y() >= 0 && place.y() < top_.y() &&
+                       place.z() >= 0 && place.z() < top_.z();
+  if (!in_grid) return {(x - x.cwiseMax(low_).cwiseMin(high_)).norm(), Vec3::Zero()};
+  const Eigen::Vector3i cell(static_cast<int>(place.x()), static_cast<int>(place.y()),
+                             static_cast<int>(place.z()));
+  const Eigen::Vector3i b(cell.x() >> kCellBits, cell.y() >> kCellBits, cell.z() >> kCellBits);
+  const Eigen::Vector3i in = cell - b * kCells;
   const size_t at = b.x() + size_t(bricks_.x()) * (b.y() + size_t(bricks_.y()) * b.z());
   if (brick_index_[at] < 0) {
     const Vec3 away = x - brick_centre(b);
@@ -189,22 +201,86 @@ SdfSample SdfObstacle::sample_mesh(const Vec3& x) const {
   }
   const Brick& brick = filled_[brick_index_[at]];
   if (brick.bent[in.z() * kCells + in.y()] >> in.x() & 1) {
-    const SurfacePoint exact = surface_.closest(x);
+    // No further than by way of the nearest corner.
+    const Eigen::Vector3i near = (place - cell.cast<double>()).array().round().cast<int>();
+    const double value =
+        brick.values[near.x() + in.x() + kSide * (near.y() + in.y() + kSide * (near.z() + in.z()))];
+    const double way = voxel_ * (place - (cell + near).cast<double>()).norm();
+    const SurfacePoint exact = surface_.closest(x, (std::abs(value) + way) * (1 + 1e-6));
     return {exact.distance, gradient_at(exact, x)};
   }
-  const float* first = &brick.values[in.x() + kSide * (in.y() + kSide * in.z())];
-  const double corners[8] = {first[0],
-                             first[1],
-                             first[kSide],
-                             first[kSide + 1],
-                             first[kSide * kSide],
-                             first[kSide * kSide + 1],
-                             first[kSide * kSide + kSide],
-                             first[kSide * kSide + kSide + 1]};
+  double corners[8];
+  brick.corners(in, corners);
   SdfSample result;
   result.distance = interpolate(corners, place - cell.cast<double>(), result.gradient);
   result.gradient.normalize();
   return result;
+}
+
+double SdfObstacle::least(const Vec3& centre, const Vec3& half) const {
+  const Vec3 low = centre - half, high = centre + half;
+  // The field leaves the box around the solid with a distance of zero or more, and errs by little.
+  const Vec3 apart = (low - world_high_).cwiseMax(world_low_ - high).cwiseMax(0.0);
+  if (apart.squaredNorm() > 4 * band_ * band_) return band_;
+  if (!placed_) return least_mesh(low, high);
+  const Vec3 within = to_mesh(centre), reach = back_.cwiseAbs() * half;
+  return least_mesh(within - reach, within + reach);
+}
+
+// In a cell the field is multilinear, so on the part of the box in it, it is least at a corner of that part;
+// in a bent one it is a distance, which changes by no more than the way; that to a convex solid is no smaller
+// than that to the plane between.
+double SdfObstacle::least_mesh(const Vec3& low, const Vec3& high) const {
+  constexpr double kMostCells = 100;
+  const Vec3 from = (low - origin_) / voxel_, to = (high - origin_) / voxel_;
+  // Beyond the grid nothing is nearer than the band.
+  if (!from.allFinite() || !to.allFinite()) return -std::numeric_limits<double>::infinity();
+  const Eigen::Vector3i first = from.cwiseMax(0.0).cwiseMin(top_).cast<int>(),
+                        last = to.cwiseMax(0.0).cwiseMin(top_ - Vec3::Ones()).cast<int>();
+  double least = band_;
+  const auto beyond_way = [&](const Vec3& place, double way) {
+    return surface_.closest(origin_ + voxel_ * place).distance - voxel_ * way;
+  };
+  std::optional<double> plane;
+  const auto beyond_plane = [&] {
+    if (plane) return *plane;
+    const Vec3 middle = (low + high) / 2;
+    const SurfacePoint found = surface_.closest(middle);
+    const Vec3 normal = gradient_at(found, middle);
+    return *(plane = found.distance - normal.cwiseAbs().dot(high - low) / 2);
+  };
+  if ((last - first).minCoeff() < 0) return least;
+  if ((last - first + Eigen::Vector3i::Ones()).cast<double>().prod() > kMostCells)
+    return -std::numeric_limits<double>::infinity();
+  for (int z = first.z(); z <= last.z(); ++z)
+    for (int y = first.y(); y <= last.y(); ++y)
+      for (int x = first.x(); x <= last.x(); ++x) {
+        const Eigen::Vector3i cell(x, y, z), b = cell / kCells, in = cell - b * kCells;
+        const size_t at = b.x() + size_t(bricks_.x()) * (b.y() + size_t(bricks_.y()) * b.z());
+        if (brick_index_[at] < 0) {
+          if (centre_value_[at] < 0) return -std::numeric_limits<double>::infinity();
+          continue;
+        }
+        const Vec3 begin = (from - cell.cast<double>()).cwiseMax(0.0).cwiseMin(1.0),
+                   end = (to - cell.cast<double>()).cwiseMax(0.0).cwiseMin(1.0);
+        const Brick& brick = filled_[brick_index_[at]];
+        if (brick.bent[in.z() * kCells + in.y()] >> in.x() & 1) {
+          least = std::min(least, surface_.convex() ? beyond_plane()
+                                                    : beyond_way(cell.cast<double>() + (begin + end) / 2,
+                                                                 (end - begin).norm() / 2));
+        } else {
+          double corners[8];
+          brick.corners(in, corners);
+          Vec3 gradient;
+          for (int c = 0; c < 8; ++c) {
+            const Vec3 t(c & 1 ? end.x() : begin.x(), c & 2 ? end.y() : begin.y(),
+                         c & 4 ? end.z() : begin.z());
+            least = std::min(least, interpolate(corners, t, gradient));
+          }
+        }
+        if (least <= 0) return least;
+      }
+  return least;
 }
 
 size_t SdfObstacle::bytes() const {

@@ -50,11 +50,16 @@ class SdfObstacle {
   double distance(const Vec3& x) const { return sample(x).distance; }
   SdfSample sample(const Vec3& x) const;
 
+  /// m: no point of an upright box has a smaller distance(), if this is above zero. Otherwise that was not
+  /// found out. It is never above the band.
+  double least(const Vec3& centre, const Vec3& half) const;
+
   /// Moves it. Scaling and shear belong into the mesh, where distances stay exact. All questions and answers
   /// are in the world's frame.
   void place(const ObstaclePose& pose);
   const ObstaclePose& pose() const { return pose_; }
-  bool moves() const { return moves_; }  ///< its pose has a velocity
+  bool moves() const { return moves_; }      ///< its pose has a velocity
+  uint64_t state() const { return state_; }  ///< another for every field and place
   Vec3 velocity_at(const Vec3& x) const {
     return pose_.velocity + pose_.angular_velocity.cross(x - pose_.centre);
   }
@@ -77,12 +82,18 @@ class SdfObstacle {
   size_t bytes() const;
 
  private:
-  static constexpr int kCells = 8, kSide = kCells + 1, kSamples = kSide * kSide * kSide;
+  static constexpr int kCellBits = 3, kCells = 1 << kCellBits, kSide = kCells + 1,
+                       kSamples = kSide * kSide * kSide;
   struct Brick {
     std::array<float, kSamples> values;             // m, x fastest
     std::array<uint8_t, kCells* kCells> bent = {};  // bit x of [z * 8 + y]: ask Embree
+    void corners(const Eigen::Vector3i& cell, double (&f)[8]) const {
+      const float* first = &values[cell.x() + kSide * (cell.y() + kSide * cell.z())];
+      for (int c = 0; c < 8; ++c) f[c] = first[(c & 1) + kSide * ((c >> 1 & 1) + kSide * (c >> 2))];
+    }
   };
   SdfSample sample_mesh(const Vec3& x) const;
+  double least_mesh(const Vec3& low, const Vec3& high) const;
   Vec3 brick_centre(const Eigen::Vector3i& b) const;
   void fill(Brick& brick, const Eigen::Vector3i& at) const;
   void mark_bent(Brick& brick, const Vec3& corner, const std::vector<Vec3>& gradients) const;
@@ -91,11 +102,13 @@ class SdfObstacle {
   ObstaclePose pose_;
   Mat3 back_ = Mat3::Identity();  // world's directions in the mesh's frame
   bool placed_ = false, moves_ = false;
+  uint64_t state_;
   double half_sheet_ = 0;  // m
   Vec3 world_low_, world_high_;
   Vec3 low_, high_, origin_;  // with the sheet's thickness
   double voxel_, band_;
   Eigen::Vector3i bricks_;            // number along each axis
+  Vec3 top_;                          // voxels along each axis
   std::vector<int32_t> brick_index_;  // into filled_, or -1
   std::vector<float> centre_value_;   // m, exact distance at the centre of each brick
   std::vector<Brick> filled_;

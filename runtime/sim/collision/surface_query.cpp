@@ -18,6 +18,7 @@ struct SurfaceQuery::Embree {
   RTCScene scene = nullptr;
 
   double half_sheet = 0;  // m
+  bool convex = false;
 
   Embree(const Mesh& mesh, double sheet) : surface(mesh, sheet > 0), half_sheet(sheet / 2) {
     const Mesh& m = surface.mesh();
@@ -25,6 +26,7 @@ struct SurfaceQuery::Embree {
     for (const Vec3& p : m.positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
     centre = (low + high) / 2;
     slack = (high - low).norm() * 1e-6;
+    convex = sheet == 0 && is_convex((high - low).norm());
 
     device = rtcNewDevice("threads=1");
     if (!device)
@@ -46,6 +48,16 @@ struct SurfaceQuery::Embree {
     rtcReleaseGeometry(geometry);
     rtcCommitScene(scene);
   }
+  bool is_convex(double size) const {
+    constexpr double kMost = 1e6, kRounding = 1e-14;
+    const Mesh& m = surface.mesh();
+    if (static_cast<double>(m.triangles.size()) * static_cast<double>(m.positions.size()) > kMost)
+      return false;
+    for (uint32_t i = 0; i < m.triangles.size(); ++i)
+      for (const Vec3& p : m.positions)
+        if ((p - m.positions[m.triangles[i][0]]).dot(surface.face_normal(i)) > kRounding * size) return false;
+    return true;
+  }
   Embree(const Embree&) = delete;
   ~Embree() {
     rtcReleaseScene(scene);
@@ -61,22 +73,34 @@ struct Search {
   double slack;
   TrianglePoint best;
   uint32_t triangle;
+  double limit;  // m², beyond which a triangle is of no use
 };
 
-bool visit(RTCPointQueryFunctionArguments* arguments) {
-  auto& search = *static_cast<Search*>(arguments->userPtr);
+constexpr size_t kFew = 24;  // triangles that are looked at faster than Embree finds out which
+
+// Whether it is nearer than the best one.
+bool consider(uint32_t triangle, Search& search) {
   const Mesh& mesh = search.surface->mesh();
-  const Triangle& t = mesh.triangles[arguments->primID];
+  const Triangle& t = mesh.triangles[triangle];
+  const double height = (search.x - mesh.positions[t[0]]).dot(search.surface->face_normal(triangle));
+  if (height * height > search.limit) return false;
   const TrianglePoint found =
       closest_on_triangle(search.x, mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]);
   // Ties go to the lowest triangle, so that the answer does not depend on the order of the search.
   if (found.squared_distance > search.best.squared_distance ||
-      (found.squared_distance == search.best.squared_distance && arguments->primID >= search.triangle))
+      (found.squared_distance == search.best.squared_distance && triangle >= search.triangle))
     return false;
   search.best = found;
-  search.triangle = arguments->primID;
+  search.triangle = triangle;
+  search.limit = found.squared_distance * (1 + 1e-9);
+  return true;
+}
+
+bool visit(RTCPointQueryFunctionArguments* arguments) {
+  auto& search = *static_cast<Search*>(arguments->userPtr);
+  if (!consider(arguments->primID, search)) return false;
   arguments->query->radius =
-      static_cast<float>(std::sqrt(found.squared_distance) * (1 + 1e-6) + search.slack);
+      static_cast<float>(std::sqrt(search.best.squared_distance) * (1 + 1e-6) + search.slack);
   return true;
 }
 
@@ -91,22 +115,31 @@ const Mesh& SurfaceQuery::mesh() const {
   return embree_->surface.mesh();
 }
 
+bool SurfaceQuery::convex() const {
+  return embree_->convex;
+}
+
 SurfacePoint SurfaceQuery::closest(const Vec3& x, double within) const {
   const Vec3 local = x - embree_->centre;
   // What single precision loses grows with the distance from the centre.
   const double slack = embree_->slack + local.norm() * 1e-6;
-  Search search{&embree_->surface, x, slack, {}, Id<void>::kNone};
+  const double reach = within + embree_->half_sheet + slack;
+  Search search{&embree_->surface, x, slack, {}, Id<void>::kNone, reach * reach};
   search.best.squared_distance = std::numeric_limits<double>::infinity();
 
-  RTCPointQuery query;
-  query.x = static_cast<float>(local.x());
-  query.y = static_cast<float>(local.y());
-  query.z = static_cast<float>(local.z());
-  query.time = 0;
-  query.radius = static_cast<float>(within + embree_->half_sheet + slack);
-  RTCPointQueryContext context;
-  rtcInitPointQueryContext(&context);
-  rtcPointQuery(embree_->scene, &query, &context, visit, &search);
+  if (const size_t count = mesh().triangles.size(); count <= kFew) {
+    for (uint32_t i = 0; i < count; ++i) consider(i, search);
+  } else {
+    RTCPointQuery query;
+    query.x = static_cast<float>(local.x());
+    query.y = static_cast<float>(local.y());
+    query.z = static_cast<float>(local.z());
+    query.time = 0;
+    query.radius = static_cast<float>(reach);
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(embree_->scene, &query, &context, visit, &search);
+  }
   require(search.triangle != Id<void>::kNone, "no closest point within the promised distance");
 
   const double distance = std::sqrt(search.best.squared_distance);

@@ -34,6 +34,7 @@ class SurfaceQuery {
   bool ray_meets(const Vec3& x, const Vec3& direction, double skip = 1e-4) const;
 
   const Mesh& mesh() const;  ///< welded
+  bool convex() const;       ///< a solid of few triangles that all other vertices lie behind
 
  private:
   struct Embree;
