@@ -21,15 +21,15 @@ bool Anchors::attach(Plant& plant, ParticleId particle, const Surroundings& arou
 
   Record record;
   record.particle = particle;
-  record.away = motion.orientation.conjugate() * support->normal;
-  record.along = 0;
   // Roots bridge the gap as it is: holding on does not pull.
   record.gap = support->distance - segment.half_width;
   record.solid = support->solid;
   record.on_solid = support->solid ? support->solid->to_mesh(support->point) : support->point;
+  record.normal =
+      support->solid ? support->solid->pose().rotation.conjugate() * support->normal : support->normal;
   WorldSpring spring;
   spring.particle = particle;
-  spring.target = support->point;
+  spring.target = motion.position;
   records_.push_back(record);
   plant.anchors.push_back(spring);
   held_.resize(std::max(held_.size(), plant.particles.size()), 0);
@@ -48,19 +48,19 @@ void Anchors::update(Plant& plant, double dt_growth) {
     record.age += dt_growth;
     const double hard = std::min(1.0, record.age / parameters_.seconds_to_full);
     const double stiffness = parameters_.stiffness * hard * segment.half_width / young_radius_;
-    spring.on_particle = Vec3(0, record.along, 0) - (segment.half_width + record.gap) * record.away;
     spring.stiffness = stiffness * Mat3::Identity();
     spring.damping = parameters_.damping_time * spring.stiffness;
-
-    Vec3 held = record.on_solid;  // now; the spring acts at the moment of balance, between now and the step's end
+    // Where the axis is held: at the skin, which turns with the stem, a taut anchor would make it spin.
+    const double off = segment.half_width + record.gap;
+    spring.target = record.on_solid + off * record.normal;
+    Vec3 held = spring.target;  // now; the spring acts between now and the step's end
     if (record.solid) {
-      const Vec3 at_end = record.solid->to_world(record.on_solid);
+      const Vec3 at_end = record.solid->to_world(record.on_solid + off * record.normal);
       spring.target_velocity = record.solid->velocity_at(at_end);
       held = at_end - plant.scheme.dt * spring.target_velocity;
       spring.target = at_end - GeneralizedAlpha(plant.scheme.rho_infinity).alpha_f * (at_end - held);
     }
-    const Vec3 point = motion.position + motion.orientation * spring.on_particle;
-    if ((point - held).norm() > parameters_.release_distance) {
+    if ((motion.position - held).norm() > parameters_.release_distance) {
       held_[spring.particle.index()] = 0;
       ++released_;
       continue;

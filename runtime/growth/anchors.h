@@ -23,8 +23,8 @@ class Anchors {
   /// on now.
   bool attach(Plant& plant, ParticleId particle, const Surroundings& around);
 
-  /// Hardens anchors, lets them follow the stem's thickness and their moving supports, and releases those pulled
-  /// beyond the distance. Solids must stand where they will be at the end of the coming step.
+  /// Hardens anchors, lets them follow the stem's thickness and their moving supports, and releases those
+  /// pulled beyond the distance. Solids must stand where they will be at the end of the coming step.
   void update(Plant& plant, double dt_growth);
 
   /// The plant lost particles, and its anchors with them.
@@ -37,12 +37,10 @@ class Anchors {
  private:
   struct Record {
     ParticleId particle;
-    Vec3 away;       // unit, particle's frame: from the surface to the axis
-    double along;    // m along the axis from the centre
-    double gap;      // m between stem and surface when it was made
-    double age = 0;  // growth s
+    double gap;                // m between stem and surface when it was made
+    double age = 0;            // growth s
     const SdfObstacle* solid;  // what it holds on to, null: the ground
-    Vec3 on_solid;             // m, in the solid's own frame
+    Vec3 on_solid, normal;     // where, m, and out of it, unit; in the solid's own frame
   };
   AnchorParameters parameters_;
   double young_radius_;

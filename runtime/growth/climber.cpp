@@ -116,7 +116,7 @@ void Climber::germinate(Plant& plant, const Surroundings& around) {
     const Shoot shoot{BranchId(), parameters_.tip_radius, place * parameters_.fan, parameters_.longest_shoot};
     const Vec3 beside = 6 * parameters_.tip_radius * (i - (count - 1) / 2.0) * normal.cross(up);
     start_shoot(plant, {ParticleId(), seed_ - beside}, BranchId(),
-                Eigen::AngleAxisd(shoot.course, normal) * direction, shoot);
+                Eigen::AngleAxisd(shoot.course, normal) * direction, shoot, around);
     finish_node(plant, shoots_.size() - 1, around);  // full-grown from the start
   }
 }
@@ -128,7 +128,7 @@ bool Climber::may_grow(const Plant& plant, int level) const {
 }
 
 void Climber::start_shoot(Plant& plant, const Attachment& at, BranchId parent, const Vec3& direction,
-                          Shoot shoot) {
+                          Shoot shoot, const Surroundings& around) {
   Branch branch;
   branch.parent = parent;
   branch.level = parent.valid() ? plant.branches[parent.index()].level + 1 : 0;
@@ -136,15 +136,20 @@ void Climber::start_shoot(Plant& plant, const Attachment& at, BranchId parent, c
   branch.strength = parameters_.strength;
   shoot.branch = BranchId(plant.branches.size());
   plant.branches.push_back(branch);
-  append_stem(plant, shoot, at, Quat::FromTwoVectors(Vec3::UnitY(), direction));
+  append_stem(plant, shoot, at, Quat::FromTwoVectors(Vec3::UnitY(), direction), around);
   shoots_.push_back(shoot);
 }
 
-ParticleId Climber::append_stem(Plant& plant, const Shoot& shoot, const Attachment& at,
-                                const Quat& orientation) {
+ParticleId Climber::append_stem(Plant& plant, const Shoot& shoot, const Attachment& at, Quat orientation,
+                                const Surroundings& around) {
   // The first particle of a stem from the seed is full-grown: it is what the seed was.
   const double length = parameters_.segment_length * (at.parent.valid() ? kYoungestSegment : 1);
   const SegmentShape shape{length / 2, shoot.tip_radius, shoot.tip_radius};
+  if (at.parent.valid()) {
+    const Vec3 forward = orientation * Vec3::UnitY();
+    if (const auto wall = in_the_way(around, head_of(plant, at.parent), forward, shoot.tip_radius, length))
+      orientation = Quat::FromTwoVectors(forward, along(*wall, forward, around.to_sun)) * orientation;
+  }
   const ParticleId id = append_segment(plant, shoot.branch, at, shape, orientation);
   Branch& branch = plant.branches[shoot.branch.index()];
   branch.length += length;
@@ -200,11 +205,11 @@ void Climber::finish_node(Plant& plant, size_t index, const Surroundings& around
        breaking_buds(shoot, level, head, forward, outward, parameters_.branching, crowding_, branching_))
     if (may_grow(plant, level + 2) && head.y() > around.ground_height + parameters_.segment_length)
       start_shoot(plant, here, branch, bud.direction,
-                  {BranchId(), bud.tip_radius, bud.course, shoot.longest / 2, shoot.light});
+                  {BranchId(), bud.tip_radius, bud.course, shoot.longest / 2, shoot.light}, around);
 
   shoot.growing = plant.branches[branch.index()].length < shoot.longest &&
                   shoot.free_length < parameters_.longest_free && may_grow(plant, level);
-  if (shoot.growing) append_stem(plant, shoot, here, plant.motion[node.index()].orientation);
+  if (shoot.growing) append_stem(plant, shoot, here, plant.motion[node.index()].orientation, around);
   shoots_[index] = shoot;
 }
 
@@ -254,7 +259,8 @@ void Climber::break_bud_below_cut(Plant& plant, size_t index, const Surroundings
                      crowding_, branching_))
     if (may_grow(plant, level + 2))
       start_shoot(plant, {node, Vec3(0, plant.particles[node.index()].half_length, 0)}, parent.branch,
-                  bud.direction, {BranchId(), bud.tip_radius, bud.course, parent.longest / 2, parent.light});
+                  bud.direction, {BranchId(), bud.tip_radius, bud.course, parent.longest / 2, parent.light},
+                  around);
 }
 
 // A few particles a step are looked at again: a stem that was blown against the wall takes root there.

@@ -28,8 +28,8 @@ struct GrowthReport {
 };
 
 /// Owns what growth needs to know besides the plant. One climber grows one plant, from empty, and is the only
-/// one that adds particles, branches or anchors to it; it must hear of what others take away. Deterministic: the same seed and calls grow the same
-/// plant.
+/// one that adds particles, branches or anchors to it; it must hear of what others take away. Deterministic:
+/// the same seed and calls grow the same plant.
 class Climber {
  public:
   /// seed_position (m) is on the ground, which is taken to be level there. Throws Error{Input} for parameters
@@ -43,9 +43,9 @@ class Climber {
   GrowthReport grow(Plant& plant, std::span<const SdfObstacle* const> obstacles, const Vec3& to_sun,
                     double dt_growth);
 
-  /// Between steps, after remove_subtree() or detach_subtree(): shoots and leaves that are gone are forgotten,
-  /// a shoot that lost its tip stops, and a lateral bud below the cut breaks, where there is room, as if it
-  /// had waited for that.
+  /// Between steps, after remove_subtree() or detach_subtree(): shoots and leaves that are gone are
+  /// forgotten, a shoot that lost its tip stops, and a lateral bud below the cut breaks, where there is room,
+  /// as if it had waited for that.
   void follow(const TopologyChange& change);
 
   /// One flag per particle of the plant: 1 for tips and leaves that are not full-grown.
@@ -56,21 +56,23 @@ class Climber {
  private:
   /// What a branch was like when it was last calibrated.
   struct Calibrated {
-    double length = 0;  // m
-    double mass = 0;    // kg, with what it carries
-    double base = 0;    // N·m/rad, physical stiffness of its first joint
+    double length = 0;        // m
+    double mass = 0;          // kg, with what it carries
+    double base = 0;          // N·m/rad, physical stiffness of its first joint
     bool on_its_way = false;  // to what it should be: it was changed by no more than what is not seen
     double seen_length = 0, seen_base = 0;  // in the last call
     bool differs(const Calibrated& now, double by) const {
-      return on_its_way || std::abs(now.length - length) > by * length || std::abs(now.mass - mass) > by * mass ||
-             std::abs(now.base - base) > by * base;
+      return on_its_way || std::abs(now.length - length) > by * length ||
+             std::abs(now.mass - mass) > by * mass || std::abs(now.base - base) > by * base;
     }
   };
   void grow_once(Plant& plant, const Surroundings& around, double dt);
   void germinate(Plant& plant, const Surroundings& around);
   bool may_grow(const Plant& plant, int level) const;
-  void start_shoot(Plant& plant, const Attachment& at, BranchId parent, const Vec3& direction, Shoot shoot);
-  ParticleId append_stem(Plant& plant, const Shoot& shoot, const Attachment& at, const Quat& orientation);
+  void start_shoot(Plant& plant, const Attachment& at, BranchId parent, const Vec3& direction, Shoot shoot,
+                   const Surroundings& around);
+  ParticleId append_stem(Plant& plant, const Shoot& shoot, const Attachment& at, Quat orientation,
+                         const Surroundings& around);
   void finish_node(Plant& plant, size_t shoot, const Surroundings& around);
   void break_bud_below_cut(Plant& plant, size_t shoot, const Surroundings& around);
   void hold_on_again(Plant& plant, const Surroundings& around);

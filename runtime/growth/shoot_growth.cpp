@@ -7,6 +7,7 @@
 #include "runtime/growth/tropisms.h"
 
 namespace liana {
+
 Vec3 course_on_surface(const Vec3& normal, double course) {
   const Vec3 up = Vec3::UnitY() - normal.y() * normal;
   if (up.norm() < 0.3) return Vec3::Zero();
@@ -36,23 +37,48 @@ Quat tip_turn(const Shoot& shoot, const Vec3& forward, double radius, const std:
   return Quat(Eigen::AngleAxisd(noise, normal)) * climb * adapt * light;  // Eq. 8 with two rotations more
 }
 
+std::optional<Blocked> in_the_way(const Surroundings& around, const Vec3& head, const Vec3& forward,
+                                  double radius, double length) {
+  const Vec3 goal = head + length * forward;
+  auto next = closest_support(around.obstacles, goal, radius);
+  const double height = goal.y() - around.ground_height;
+  if (height < (next ? next->distance : radius))
+    next = {goal - height * Vec3::UnitY(), Vec3::UnitY(), height};
+  if (!next) return {};
+  const double into = -next->normal.dot(forward);
+  if (into < 0.2) return {};
+  return Blocked{next->normal, std::clamp(length - (radius - next->distance) / into, 0.0, length)};
+}
+
+Vec3 along(const Blocked& wall, const Vec3& forward, const Vec3& away) {
+  const auto on_wall = [&](const Vec3& v) { return Vec3(v - v.dot(wall.normal) * wall.normal); };
+  Vec3 way = on_wall(forward);
+  if (way.norm() < 0.3) way += on_wall(away);
+  return way.norm() > 1e-3 ? way.normalized() : wall.normal.unitOrthogonal();
+}
+
 bool grow_tip(Plant& plant, const Shoot& shoot, const ClimberParameters& parameters,
               const Surroundings& around, Random& random, double dt) {
   Branch& branch = plant.branches[shoot.branch.index()];
   const ParticleId tip = branch.particles.back();
   Particle& particle = plant.particles[tip.index()];
 
-  const Vec3 head = head_of(plant, tip);
+  const Vec3 head = head_of(plant, tip), forward = forward_of(plant, tip);
   const auto support = closest_support(around.obstacles, head, parameters.tropisms.search_radius);
-  turn_segment(plant, tip,
-               tip_turn(shoot, forward_of(plant, tip), particle.half_width, support, around,
-                        parameters.tropisms, random, dt));
-
   const double lit = parameters.shade + (1 - parameters.shade) * shoot.light;
   const double vigour =
       std::clamp(4 * (1 - branch.length / shoot.longest), 0.25, 1.0);  // the last quarter is slow
-  const double by = std::min(parameters.elongation * lit * vigour * dt,
-                             parameters.segment_length - 2 * particle.half_length);
+  double by = std::min(parameters.elongation * lit * vigour * dt,
+                       parameters.segment_length - 2 * particle.half_length);
+  if (const auto ahead = in_the_way(around, head, forward, particle.half_width, by)) {
+    by = ahead->free;
+    const Vec3 onwards = along(*ahead, forward, support ? support->normal : around.to_sun);
+    turn_segment(plant, tip, steering(forward, onwards, parameters.tropisms.surface_adaption * dt));
+  } else {
+    turn_segment(
+        plant, tip,
+        tip_turn(shoot, forward, particle.half_width, support, around, parameters.tropisms, random, dt));
+  }
   lengthen_segment(plant, tip, by);
   branch.length += by;
 

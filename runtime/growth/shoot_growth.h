@@ -33,6 +33,19 @@ Vec3 course_on_surface(const Vec3& normal, double course);
 Quat tip_turn(const Shoot& shoot, const Vec3& forward, double radius, const std::optional<Support>& support,
               const Surroundings& around, const TropismParameters& parameters, Random& random, double dt);
 
+/// What a tip would grow into.
+struct Blocked {
+  Vec3 normal;  ///< unit, out of it
+  double free;  ///< m that it may still grow
+};
+
+/// What a head of this radius (m) runs into, rather than along, on its next `length` m.
+std::optional<Blocked> in_the_way(const Surroundings& around, const Vec3& head, const Vec3& forward,
+                                  double radius, double length);
+
+/// Where it goes on, unit: along what stops it; where it meets that squarely, in the direction `away`.
+Vec3 along(const Blocked& wall, const Vec3& forward, const Vec3& away);
+
 /// Turns and lengthens the shoot's last particle by dt of growth and keeps its head out of solids and ground.
 /// True when the particle is full-grown.
 bool grow_tip(Plant& plant, const Shoot& shoot, const ClimberParameters& parameters,

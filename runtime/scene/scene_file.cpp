@@ -4,6 +4,8 @@
 
 #include "materials/law/toml_table.h"
 #include "mesher/base/error.h"
+#include "mesher/base/files.h"
+#include "mesher/base/weld.h"
 #include "mesher/io/plant_file.h"
 #include "runtime/growth/climber_parameters.h"
 #include "runtime/scene/scene_events.h"
@@ -26,9 +28,14 @@ std::filesystem::path existing_file(const TomlTable& table, const std::string& k
   return path;
 }
 
-/// Any glTF file, all its meshes as one.
+/// Any glTF, OBJ or PLY file, all its meshes as one.
 Mesh read_obstacle_mesh(const std::filesystem::path& path) {
   Mesh all;
+  const std::string extension = path.extension().string();
+  if (extension == ".obj" || extension == ".ply") {
+    const TriangleSoup soup = (extension == ".obj" ? parse_obj : parse_ply)(read_file(path), path.string());
+    return weld({soup.positions, soup.triangles});
+  }
   for (const Domain& part : read_plant(path).domains) {
     const auto first = static_cast<uint32_t>(all.positions.size());
     all.positions.insert(all.positions.end(), part.surface.positions.begin(), part.surface.positions.end());
@@ -40,7 +47,8 @@ Mesh read_obstacle_mesh(const std::filesystem::path& path) {
 
 ContactFeel read_feel(const TomlTable& table) {
   const ContactFeel usual;
-  return {table.number_or("friction", usual.friction, 0, 1), table.number_or("elasticity", usual.elasticity, 0, 1)};
+  return {table.number_or("friction", usual.friction, 0, 1),
+          table.number_or("elasticity", usual.elasticity, 0, 1)};
 }
 
 /// Scales, rotates and moves a mesh about a point. Exact: its distance field is that of the moved mesh.
@@ -154,7 +162,8 @@ Scene read_scene(const std::filesystem::path& path) {
   scene.plant_contacts = table.flag_or("plant_contacts", false);
   if (const auto touch = table.table("plant_touch")) {
     if (!scene.plant_contacts)
-      touch->fail("friction", "means nothing while plants do not touch each other", "set plant_contacts = true");
+      touch->fail("friction", "means nothing while plants do not touch each other",
+                  "set plant_contacts = true");
     scene.plant_feel = read_feel(*touch);
     touch->refuse_unknown_keys();
   }

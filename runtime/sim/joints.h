@@ -10,6 +10,9 @@
 // point: linear and angular momentum are conserved exactly. The stiffness is Gauss-Newton's Jᵀ C J.
 #pragma once
 
+#include <algorithm>
+
+#include "runtime/sim/lanes/step_view.h"
 #include "runtime/sim/plant.h"
 #include "runtime/sim/rotation.h"
 
@@ -76,6 +79,12 @@ inline double joint_gap(const Joint& joint, const Vec3& parent_position, const Q
   return (child_position + child_orientation * joint.on_self - parent_position -
           parent_orientation * joint.on_parent)
       .norm();
+}
+
+/// What a joint's gap is measured against, m: the length of the particle, with its petiole if it has one.
+inline double gap_scale(const Particle& particle) {
+  const double half = particle.half_length;
+  return std::max(half + std::max(half, particle.joint.on_self.norm()), lanes::kLeastGapScale);
 }
 
 }  // namespace liana

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/sim/joints.h"
+
 namespace liana {
 namespace {
-
-constexpr double kShortest = 1e-3;  // m: what the gap of a particle without length is measured against
 
 double kinetic_energy(const Plant& plant) {
   double sum = 0;
@@ -39,7 +39,7 @@ int reseat(Plant& plant, double gap_limit) {
     }
     const Vec3 lever = m.orientation * joint.on_self;
     const Vec3 open = place - m.position - lever;
-    if (!(open.norm() > gap_limit * std::max(2 * particle.half_length, kShortest))) continue;
+    if (!(open.norm() > gap_limit * gap_scale(particle))) continue;
     ++closed;
     m.position += open;
     m.velocity = velocity - m.angular_velocity.cross(lever);

@@ -5,7 +5,7 @@
 
 namespace liana {
 
-/// From the root on: every particle whose joint is open by more than gap_limit (of its length) is moved,
+/// From the root on: every particle whose joint is open by more than gap_limit (of its gap_scale()) is moved,
 /// unturned, to where the joint is closed, and takes the joint's velocity. All else keeps its place relative
 /// to its parent. Kinetic energy does not grow; accelerations are forgotten. Returns how many joints were
 /// closed.

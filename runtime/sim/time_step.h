@@ -1,7 +1,7 @@
 // One step of one plant: generalized-α, one linearised solve over the tree, and a net under it.
 //
 // Symbols: h substep (s); ρ∞ spectral radius at infinite frequency; gap distance between the two anchor
-// points of a joint, over the length of the particle. A step whose gap exceeds the limit is thrown away and
+// points of a joint, over the length of the particle with its petiole. A step whose gap exceeds the limit is thrown away and
 // redone from the same start with 2, 4, … 32 times as many substeps at ρ∞ = 0.
 #pragma once
 
@@ -23,7 +23,7 @@ struct Wrench {
 struct StepOptions {
   double dt = 0.025;             ///< s; frequencies are as baked only when it equals plant.scheme.dt
   Vec3 gravity = {0, -9.81, 0};  ///< m/s²
-  double gap_limit = 0.02;       ///< of the particle's length; above it the step is redone
+  double gap_limit = 0.02;       ///< of gap_scale(); above it the step is redone
   int most_redo_substeps = 32;   ///< per substep of the scheme; 1 switches the net off
   unsigned threads = 1;          ///< that share one plant, if it has some 400 particles or more
 };
@@ -31,7 +31,7 @@ struct StepOptions {
 struct StepReport {
   int solves = 0;          ///< linear solves spent, redone ones included
   int redone = 0;          ///< 0 in normal motion: how often this step was started again
-  double gap = 0;          ///< largest joint gap of the accepted step, over the particle's length
+  double gap = 0;          ///< largest joint gap of the accepted step, over its gap_scale()
   bool gap_held = true;    ///< false when even the finest redo ended above the limit
   int reseated = 0;        ///< joints that were then closed by hand (see reseat.h)
   bool finite = true;      ///< false when no redo stayed finite: positions kept, velocities cleared

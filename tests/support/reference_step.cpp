@@ -117,7 +117,7 @@ bool ReferenceStepper::advance(Plant& plant, const Substep& step) {
     const double open =
         joint_gap(particle.joint, parent.position, parent.orientation, n.position, n.orientation);
     const bool free = particle.joint.shear_stiffness.isZero(0);
-    if (!free) gap_ = std::max(gap_, open / (2 * particle.half_length));
+    if (!free) gap_ = std::max(gap_, open / gap_scale(particle));
     sum += open + n.velocity.sum() + n.angular_velocity.sum() + n.orientation.w();
   }
   plant.motion.swap(next_);

@@ -4,12 +4,21 @@
 #include <cmath>
 
 #include "runtime/sim/generalized_alpha.h"
+#include "runtime/sim/joints.h"
 
 namespace liana {
 namespace {
 
-constexpr double kImpact = 1e-3;      // m a step, beyond which an approach is an impact
-constexpr double kImpactSpeed = 0.1;  // m/s, beyond which elasticity shows
+constexpr double kImpact = 1e-3;       // m a step, beyond which an approach is an impact
+constexpr double kImpactSpeed = 0.1;   // m/s, beyond which elasticity shows
+constexpr double kBearableGap = 5e-3;  // of a joint's gap_scale(), that a contact may open it by
+
+/// N: what opens a particle's joint by a part of what a time step bears. Where a growing stem is wedged in,
+/// it stays a little inside rather than being torn off.
+double bearable_force(const Particle& particle) {
+  const double stiffness = particle.joint.shear_stiffness.minCoeff();
+  return stiffness > 0 ? kBearableGap * gap_scale(particle) * stiffness : HUGE_VAL;
+}
 
 }  // namespace
 
@@ -59,7 +68,9 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, const Gap
   const double approach = velocity.dot(n);
   const double hold_stiffness = options_.stiffness_ratio * mass / (dt * dt);  // N/m, across
   const bool blade = plant.branches[plant.particles[found.particle].branch.index()].kind == DomainKind::Leaf;
-  const double k = blade ? hold_stiffness : std::max(hold_stiffness, options_.least_stiffness);
+  const double gentle = bearable_force(plant.particles[found.particle]) / std::max(1e-9, -found.gap);
+  const double k =
+      blade ? hold_stiffness : std::max(hold_stiffness, std::min(options_.least_stiffness, gentle));
   const double coming = std::max(0.0, -approach) * dt / kImpact;
   const double settling = dt * std::clamp(1.25 - coming / 4, 0.25, 1.0);  // τ
   const Mat3 normal = n * n.transpose(), across = Mat3::Identity() - normal;
@@ -116,24 +127,26 @@ ContactReport Contacts::gather(const Plant& plant, const CollisionScene& scene,
   ContactReport report;
   report.exempt = std::count(exempt_.begin(), exempt_.end(), 1);
   auto last = before_.begin();
-  for (const Gap& found : probes_.look(plant, scene, dt, 0, clearances())) {
+  for (Gap found : probes_.look(plant, scene, dt, 0, clearances())) {
     if (exempt_[found.particle]) continue;
     report.max_penetration = std::max(report.max_penetration, -found.gap);
+    while (last != before_.end() && last->key < found.key) ++last;
+    const bool touched = last != before_.end() && last->key == found.key;
+    // Across a bar that pierces it a blade has two ways out: it keeps to one.
+    if (touched && found.crossed && found.normal.dot(last->normal) < 0) found.normal = -found.normal;
     const Motion& motion = plant.motion[found.particle];
     const Vec3 arm = motion.orientation * found.point;
     const Vec3 surface = found.solid ? found.solid->velocity_at(motion.position + arm) : Vec3::Zero();
     const Vec3 velocity = motion.velocity + motion.angular_velocity.cross(arm) - surface;
     const double coming =
         dt * velocity.dot(found.normal) + dt * dt / 2 * motion.acceleration.dot(found.normal);
-    while (last != before_.end() && last->key < found.key) ++last;
-    const bool touched = last != before_.end() && last->key == found.key;
     // A contact that settles ends a step about τ|v| above the surface, on its way down: let go then, it would
     // fall and come again for ever.
     if (found.gap + (touched ? 3 : 1) * std::min(0.0, coming) >= 0) continue;
     // What has bounced leaves by itself.
     const double elasticity = (found.solid ? found.solid->feel : options_.ground).elasticity;
     if (elasticity > 0 && velocity.dot(found.normal) > kImpactSpeed) continue;
-    Made made{found.key, touched ? last->grip : Grip()};
+    Made made{found.key, found.normal, touched ? last->grip : Grip()};
     springs.push_back(spring(plant, motion, found, found.gap - dt * surface.dot(found.normal), made.grip));
     made_.push_back(made);
     ++report.contacts;
@@ -148,7 +161,7 @@ size_t Contacts::gather_missed(const Plant& after, std::span<const Motion> befor
   const double dt = after.scheme.dt;
   for (Gap found : probes_.look(after, scene, 0, 0, clearances())) {
     if (exempt_[found.particle] || found.gap > -tolerance) continue;
-    if (std::binary_search(made_.begin(), made_.begin() + known, Made{found.key, {}})) continue;
+    if (std::binary_search(made_.begin(), made_.begin() + known, Made{found.key})) continue;
     // The plane it is behind now, seen from where it started.
     const Motion &now = after.motion[found.particle], &start = before[found.particle];
     const Vec3 from = start.position + start.orientation * found.point;
@@ -156,7 +169,7 @@ size_t Contacts::gather_missed(const Plant& after, std::span<const Motion> befor
     const double to_surface = found.gap - came.dot(found.normal);
     const Vec3 surface = found.solid ? found.solid->velocity_at(from) : Vec3::Zero();
     found.gap = to_surface + dt * surface.dot(found.normal);
-    Made made{found.key, {}};
+    Made made{found.key, found.normal};
     springs.push_back(spring(after, start, found, to_surface, made.grip));
     made_.push_back(made);
   }

@@ -15,10 +15,10 @@
 namespace liana {
 
 struct ContactOptions {
-  ContactFeel ground;             ///< obstacles have their own
-  double stiffness_ratio = 1000;  ///< normal stiffness over m/Δt²
-  double least_stiffness = 5e3;   ///< N/m
-  double push_out_speed = 0.3;    ///< m/s, at which what is deep inside is moved out
+  ContactFeel ground;               ///< obstacles have their own
+  double stiffness_ratio = 1000;    ///< normal stiffness over m/Δt²
+  double least_stiffness = 5e3;     ///< N/m
+  double push_out_speed = 0.3;      ///< m/s, at which what is deep inside is moved out
   bool remember_clearances = true;  ///< false: looks at every particle in every step, to the same effect
 };
 
@@ -52,7 +52,8 @@ class Contacts {
  private:
   struct Made {
     uint64_t key;  // particle, probe, solid
-    Grip grip;
+    Vec3 normal = Vec3::Zero();
+    Grip grip = {};
     bool operator<(const Made& other) const { return key < other.key; }
   };
   void notice_new_particles(const Plant& plant, const CollisionScene& scene);

@@ -188,15 +188,26 @@ class Probes::View {
     Vec3 normal = found.normal;
     if (crossed && gap < 0) {
       // What an edge crosses goes out across itself: along the normals of the two faces that meet there it
-      // would go to and fro, or be pushed along itself.
+      // would go to and fro, or be pushed along itself. A blade goes to the side that is sooner free.
       const Vec3 axis = motion_.orientation * Vec3::UnitY(), plane = motion_.orientation * Vec3::UnitZ();
-      const Vec3 across = blade_ ? Vec3(normal.dot(plane) * plane) : Vec3(normal - normal.dot(axis) * axis);
-      if (across.norm() > 0.03) normal = across.normalized();
+      if (blade_) {
+        const double ahead = nearest_to(x - 2 * gap * plane, kFar).distance;
+        normal = ahead > nearest_to(x + 2 * gap * plane, kFar).distance ? plane : Vec3(-plane);
+      } else if (const Vec3 across = normal - normal.dot(axis) * axis; across.norm() > 0.03) {
+        normal = across.normalized();
+      }
     }
     // A round stem is held at its axis: held at its skin, a point that turns with it, it would be rolled over
     // by its own weight.
     const Vec3 on_axis(0, point.along * particle_.half_length, 0);
-    return Gap{0, 0, solid_, blade_ ? Vec3(on_axis + arm) : on_axis, gap, normal, blade_ && point.along != 0};
+    return Gap{0,
+               0,
+               solid_,
+               blade_ ? Vec3(on_axis + arm) : on_axis,
+               gap,
+               normal,
+               crossed && gap < 0,
+               blade_ && point.along != 0};
   }
 
  private:

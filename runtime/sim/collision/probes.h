@@ -26,6 +26,7 @@ struct Gap {
   Vec3 point;                ///< m, particle's frame: what a spring holds
   double gap;                ///< m, negative inside; now, before the solid moves
   Vec3 normal;               ///< unit, away from the solid
+  bool crossed = false;      ///< an edge or a thin part of the solid goes through its axis
   bool slides = false;       ///< without friction: a blade's tip or midrib, which gives way sideways
 };
 

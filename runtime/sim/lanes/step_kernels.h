@@ -24,9 +24,6 @@ using lanes::Pack;
 using lanes::StepView;
 using namespace lanes;  // strides
 
-// m: what the gap of a particle without length is measured against.
-constexpr double kShortest = 1e-3;
-
 // Record of a pack: Lanes at these places. In a large plant the records are most of what moves between memory
 // and processor, so nothing is kept that another number gives.
 constexpr int kFrame = 0;         // F, its first two columns: 6
@@ -34,7 +31,7 @@ constexpr int kBendFrame = 6;     // D = F B⁻¹: 9
 constexpr int kLeverChild = 15;   // r_c: 3
 constexpr int kLeverParent = 18;  // r_p: 3
 constexpr int kSpring = 21;       // w, later dᵀb / c: 6
-constexpr int kGapWeight = 27;    // 1 / length², 0 where nothing closes the joint
+constexpr int kGapWeight = 27;    // 1 / gap_scale()², 0 where nothing closes the joint
 constexpr int kRow = 28;          // dᵀA / c of each spring: 36
 constexpr int kAction = 28;       // before: force and moment of the joint on the child at P: 6
 
@@ -244,7 +241,7 @@ inline void assemble(const StepView& view, size_t begin, size_t end) {
     store3(force, record + 4 * kAction);
     near.record_to_write(7);
     store3(moment, record + 4 * (kAction + 3));
-    const Lanes length = max(half_length + half_length, all(kShortest));
+    const Lanes length = max(half_length + max(half_length, root(dot(r_c, r_c))), all(kLeastGapScale));
     store(max(max(C_s.x, C_s.y), C_s.z) > zero ? all(1) / (length * length) : zero, record + 4 * kGapWeight);
   }
 }

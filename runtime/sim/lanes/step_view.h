@@ -25,6 +25,8 @@ constexpr int kBlockStride = 28;  ///< A_i 21 (lower triangle, row by row), b_i 
 constexpr int kBlockLoad = 21;
 constexpr int kRecordLanes = 64;  ///< Lanes per pack, see step_kernels.h
 
+constexpr double kLeastGapScale = 1e-3;  ///< m: what a gap is measured against without any length
+
 /// One substep over one plant. Symbols as in time_step.h.
 struct StepView {
   const double* particle;  ///< kParticleStride each
@@ -45,7 +47,7 @@ struct StepView {
 
 /// What a run over some packs found out.
 struct AdvanceResult {
-  double gap = 0;      ///< largest joint gap over the particle's length
+  double gap = 0;      ///< largest joint gap over its gap_scale()
   bool finite = true;  ///< every number of the new state is
 
   void add(const AdvanceResult& more) {
