@@ -141,5 +141,39 @@ TEST_F(BentClimber, RecalibratedTipsJumpByLessThanAHundredthOfTheirSwing) {
   RecordProperty("worst_jump_of_a_leaf", std::to_string(leaves));
 }
 
+// As above, in the steps after a cut, which takes weight from all that bore it.
+TEST_F(BentClimber, RecalibratedTipsJumpAsLittleAfterACut) {
+  const std::vector<double> speeds = swing();
+  double worst = 0;
+  size_t recalibrated = 0, cuts = 0;
+  for (size_t b = 3; b < plant_.branches.size(); b += 23, ++cuts) {
+    Plant cut = plant_;
+    Climber climber = climber_;
+    const TopologyChange change = remove_subtree(cut, plant_.branches[b].particles.front());
+    climber.follow(change);
+    std::vector<Wrench> load;
+    for (size_t i = 0; i < load_.size(); ++i)
+      if (change.particles[i].valid()) load.push_back(load_[i]);
+    for (int i = 0; i < 4; ++i) {
+      const Plant before = cut;
+      recalibrated += climber.grow(cut, {}, Vec3::UnitY(), plant_.scheme.dt).recalibrated;
+      Plant alone = not_recalibrated(cut, before);
+      load.resize(cut.particles.size());
+      PlantStepper().step(alone, load, {}, {});
+      PlantStepper().step(cut, load, {}, {});
+      for (const Branch& branch : plant_.branches) {
+        const size_t tip = branch.particles.back().index();
+        if (tip >= change.particles.size() || !change.particles[tip].valid()) continue;
+        const size_t now = change.particles[tip].index();
+        worst = std::max(worst, (cut.motion[now].velocity - alone.motion[now].velocity).norm() / speeds[tip]);
+      }
+    }
+  }
+  EXPECT_GT(cuts, 5u);
+  EXPECT_GT(recalibrated, 100u);
+  EXPECT_LT(worst, 0.01);
+  RecordProperty("worst_jump_after_a_cut", std::to_string(worst));
+}
+
 }  // namespace
 }  // namespace liana
