@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kYoungestSegment = 0.25;  // length of a new particle, of a full-grown one's
 constexpr double kLongestStep = 0.05;      // growth s; longer ones are cut
-constexpr double kThickenEvery = 0.2;      // growth s
 constexpr double kUnseenJump = 0.01;       // of a tip's speed, that a step's calibration may change it by
+constexpr double kMostAtOnce = 0.01;      // of a stiffness, beyond what its growth changes it by in that step
 constexpr double kStiffnessByLength = 3;  // exponent, about: of a branch that keeps to its law while it grows
 constexpr double kForget = 1;             // growth s, in which a bent joint gets used to its new stiffness
 constexpr double kLeafStrand = 0.35;      // of the petiole's radius: what a leaf adds to the stems below
@@ -93,12 +93,10 @@ void Climber::grow_once(Plant& plant, const Surroundings& around, double dt) {
       finish_node(plant, i, around);
   leaves_.grow(plant, around, dt, law_);
   hold_on_again(plant, around);
-  if ((since_thickened_ += dt) < kThickenEvery) return;
   thicken(
       plant, young_radius_, joint_length_,
       {parameters_.pipe_exponent, kLeafStrand * parameters_.leaves.petiole_radius, parameters_.thickening},
-      law_.default_material, since_thickened_);
-  since_thickened_ = 0;
+      law_.default_material, dt);
 }
 
 // Every first shoot stands in the ground by itself, beside the others, and leans towards the support in a
@@ -351,7 +349,8 @@ void Climber::recalibrate_changed(Plant& plant, double dt, GrowthReport& report)
     const bool its_turn = (i < first_turn ? i + count : i) - first_turn < turns;
     const double by = its_turn ? parameters_.settled : parameters_.recalibration;
     if (!last.differs(now, by)) continue;
-    // A relative change of a swinging branch's stiffness, times (ωΔt)², is what its tip's velocity jumps by.
+    // A relative change of a swinging branch's stiffness, times (ωΔt)², is what its tip's velocity jumps by;
+    // leaves that it carries low down move less and jump by more of that.
     const double phase = 2 * kPi * branch.material.frequency * plant.scheme.dt,
                  unseen = kUnseenJump / (phase * phase);
     const double scaling = branch.material.mass_scaling;
@@ -361,7 +360,7 @@ void Climber::recalibrate_changed(Plant& plant, double dt, GrowthReport& report)
       plant.particles[p.index()].mass *= heavier;
       plant.particles[p.index()].inertia *= heavier;
     }
-    const double most = last.length == 0 ? HUGE_VAL : unseen + grown;
+    const double most = last.length == 0 ? HUGE_VAL : std::min(unseen, kMostAtOnce) + grown;
     const double before = branch.stiffness_scale;
     if (!recalibrate(plant, BranchId(i), carried, chain_, most)) ++report.out_of_range;
     now.on_its_way = std::abs(std::log(branch.stiffness_scale / before)) > 0.999 * most;

@@ -104,7 +104,6 @@ class Climber {
   bool germinated_ = false;
   size_t next_hold_ = 0;        // particle looked at next for a new anchor
   size_t next_settled_ = 0;     // branch whose turn to be calibrated finely comes next
-  double since_thickened_ = 0;  // growth s
 };
 
 }  // namespace liana

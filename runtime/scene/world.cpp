@@ -76,7 +76,7 @@ World::World(const Scene& scene, unsigned threads)
       obstacles_(obstacles_of(scene, obstacle_of_, notes_)),
       solids_(pointers_to(obstacles_)),
       touching_({.feel = scene.plant_feel}),
-      wind_(scene, solids_, kGroundHeight, threads) {
+      wind_(scene, those_that_move(false), those_that_move(true), kGroundHeight, threads) {
   for (const ScenePlant& entry : scene.plants) add_baked(entry);
   for (size_t i = 0; i < scene.climbers.size(); ++i) add_climber(scene.climbers[i], scene.seed + i);
   for (const SceneCut& cut : scene_.cuts) check_point(cut.where, "[[cut]]");
@@ -175,6 +175,13 @@ void World::add_climber(const SceneClimber& entry, uint64_t seed) {
   inhabitant->growth_speed = entry.growth_speed;
   inhabitant->look = plant_look(law.species);
   inhabitants_.push_back(std::move(inhabitant));
+}
+
+std::vector<const SdfObstacle*> World::those_that_move(bool move) const {
+  std::vector<const SdfObstacle*> those;
+  for (size_t i = 0; i < solids_.size(); ++i)
+    if (scene_.obstacles[obstacle_of_[i]].motion.has_value() == move) those.push_back(solids_[i]);
+  return those;
 }
 
 void World::move_obstacles() {

@@ -108,6 +108,7 @@ class World final : public Simulation {
   };
 
   double time() const { return static_cast<double>(steps_) * scene_.time_step; }
+  std::vector<const SdfObstacle*> those_that_move(bool move) const;
   void move_obstacles();
   void add_baked(const ScenePlant& entry);
   void add_climber(const SceneClimber& entry, uint64_t seed);

@@ -19,14 +19,18 @@ std::unique_ptr<WindField> open_wind(const SceneWind& wind, uint64_t seed) {
 
 }  // namespace
 
-WorldWind::WorldWind(const Scene& scene, const std::vector<const SdfObstacle*>& solids, double ground_height,
-                     unsigned threads)
+WorldWind::WorldWind(const Scene& scene, const std::vector<const SdfObstacle*>& standing,
+                     const std::vector<const SdfObstacle*>& moving, double ground_height, unsigned threads)
     : open_(open_wind(scene.wind, scene.seed)) {
-  if (open_) sheltered_ = std::make_unique<ShelteredWind>(*open_, solids, ground_height);
+  if (open_) {
+    std::vector<const SdfObstacle*> all = standing;
+    all.insert(all.end(), moving.begin(), moving.end());
+    sheltered_ = std::make_unique<ShelteredWind>(*open_, std::move(all), ground_height);
+  }
   if (!scene.wind.air) return;
   SphWindParameters parameters = *scene.wind.air;
   parameters.threads = threads;
-  air_ = std::make_unique<SphWind>(parameters, solids, ground_height);
+  air_ = std::make_unique<SphWind>(parameters, standing, ground_height, moving);
   coupling_ = std::make_unique<PlantCoupling>(air_->air());
 }
 

@@ -11,9 +11,9 @@ namespace liana {
 
 class WorldWind {
  public:
-  /// Solids must outlive it. Throws Error{Input}.
-  WorldWind(const Scene& scene, const std::vector<const SdfObstacle*>& solids, double ground_height,
-            unsigned threads);
+  /// Solids, those that stand still and those that move, must outlive it. Throws Error{Input}.
+  WorldWind(const Scene& scene, const std::vector<const SdfObstacle*>& standing,
+            const std::vector<const SdfObstacle*>& moving, double ground_height, unsigned threads);
 
   bool has_air() const { return air_ != nullptr; }
   /// Before the plants' steps, with all of them: moves the air and finds what it does to them.

@@ -7,27 +7,51 @@
 
 namespace liana {
 
+namespace {
+
+/// Beyond the band an obstacle's value is a bound: it is asked exactly only where that could matter.
+double distance_below(const SdfObstacle& obstacle, const Vec3& x, double least) {
+  const double d = obstacle.distance(x);
+  return d < least && std::abs(d) >= obstacle.band() ? obstacle.closest_point(x).distance : d;
+}
+
+}  // namespace
+
 AirWalls::AirWalls(const Vec3& low, const Vec3& high, double spacing, double reach,
                    std::span<const SdfObstacle* const> obstacles, std::optional<double> ground_height,
                    unsigned threads)
-    : spacing_(static_cast<float>(spacing)) {
+    : low_(low), spacing_(static_cast<float>(spacing)) {
   if (obstacles.empty() && !ground_height) return;
-  for (int k = 0; k < 3; ++k) size_[k] = static_cast<int>(std::ceil((high[k] - low[k]) / spacing)) + 2;
+  fill(high, spacing, reach, threads, [&](const Vec3& x) {
+    double nearest = ground_height ? x.y() - *ground_height : reach;
+    for (const SdfObstacle* obstacle : obstacles)
+      nearest = std::min(nearest, distance_below(*obstacle, x, std::min(reach, nearest)));
+    return nearest;
+  });
+}
+
+AirWalls::AirWalls(const SdfObstacle& obstacle, double spacing, double reach, unsigned threads)
+    : spacing_(static_cast<float>(spacing)) {
+  Vec3 high = obstacle.mesh().positions.front();
+  const double half_sheet = -obstacle.closest_point(obstacle.to_world(high)).distance;  // 0 of a solid
+  low_ = high;
+  for (const Vec3& p : obstacle.mesh().positions) low_ = low_.cwiseMin(p), high = high.cwiseMax(p);
+  low_.array() -= reach + half_sheet, high.array() += reach + half_sheet;
+  fill(high, spacing, reach, threads,
+       [&](const Vec3& x) { return distance_below(obstacle, obstacle.to_world(x), reach); });
+}
+
+template <class Distance>
+void AirWalls::fill(const Vec3& high, double spacing, double reach, unsigned threads,
+                    const Distance& distance) {
+  for (int k = 0; k < 3; ++k) size_[k] = static_cast<int>(std::ceil((high[k] - low_[k]) / spacing)) + 2;
   values_.resize(size_t(size_[0]) * size_[1] * size_[2]);
   parallel_for(
       size_t(size_[1]) * size_[2], threads,
       [&](size_t row, unsigned) {
         for (int i = 0; i < size_[0]; ++i) {
-          const Vec3 x = low + spacing * Vec3(i, double(row % size_[1]), double(row / size_[1]));
-          double nearest = ground_height ? x.y() - *ground_height : reach;
-          for (const SdfObstacle* obstacle : obstacles) {
-            // Beyond the band the value is a bound: ask exactly only where it could matter.
-            double d = obstacle->distance(x);
-            if (d < std::min(reach, nearest) && std::abs(d) >= obstacle->band())
-              d = obstacle->closest_point(x).distance;
-            nearest = std::min(nearest, d);
-          }
-          values_[row * size_[0] + i] = static_cast<float>(std::clamp(nearest, -reach, reach));
+          const Vec3 x = low_ + spacing * Vec3(i, double(row % size_[1]), double(row / size_[1]));
+          values_[row * size_[0] + i] = static_cast<float>(std::clamp(distance(x), -reach, reach));
         }
       },
       16);

@@ -37,6 +37,8 @@ void ShelteredWind::shelter(Vec3& wind, const Vec3& position) const {
   for (const SdfObstacle* solid : solids_) {
     const SdfSample field = solid->sample(position);
     if (field.distance >= parameters_.layer) continue;
+    const Vec3 surface = solid->moves() ? solid->velocity_at(position) : Vec3::Zero();
+    wind -= surface;
     // Beyond the accurate band the distance is a lower bound: ask exactly there.
     if (std::abs(field.distance) < solid->band()) {
       slow(wind, field.distance, field.gradient);
@@ -44,6 +46,7 @@ void ShelteredWind::shelter(Vec3& wind, const Vec3& position) const {
       const SurfacePoint closest = solid->closest_point(position);
       slow(wind, closest.distance, (position - closest.point) / closest.distance);
     }
+    wind += surface;
   }
   if (ground_height_) slow(wind, position.y() - *ground_height_, Vec3::UnitY());
 }

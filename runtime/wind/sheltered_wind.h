@@ -16,8 +16,8 @@ struct ShelterParameters {
 };
 
 /// Another wind slowed towards each surface by the logarithmic law u(d) = u ln(1 + d/z₀) / ln(1 + δ/z₀),
-/// without its part into the surface close to it (air does not blow through a wall). Zero inside solids. The
-/// solids must outlive it.
+/// without its part into the surface close to it (air does not blow through a wall). Zero inside solids.
+/// Where a surface moves, u is relative to it: it takes the air along. The solids must outlive it.
 class ShelteredWind : public WindField {
  public:
   ShelteredWind(const WindField& open, std::vector<const SdfObstacle*> solids,

@@ -14,7 +14,6 @@ namespace {
 constexpr float kFar = 1e18f;  // m: where padding is, out of reach of everything and its square still a float
 constexpr double kCourant = 0.6;       // of c dt / h; air in a box stays calm up to 1.0
 constexpr double kViscous = 1.0 / 15;  // of ν dt / h²: Σ V ∇²W = 15/h², explicit Euler
-constexpr double kWallGap = 0.25;      // of the spacing: nearer to a solid no particle comes
 constexpr int kTasksPerWorker = 4;
 
 /// Σ W h-independent: the density of a cubic lattice of unit spacing and mass, by particles nearer than two
@@ -31,8 +30,12 @@ double lattice_density() {
 
 SphAir::~SphAir() = default;
 
-SphAir::SphAir(const AirOptions& o, const AirWalls* walls)
-    : options_(o), walls_(walls), passes_(sph_passes(o.portable)), team_(o.threads) {
+SphAir::SphAir(const AirOptions& o, const AirWalls* walls, const MovingWalls* moving)
+    : options_(o),
+      walls_(walls && !walls->empty() ? walls : nullptr),
+      moving_(moving && !moving->empty() ? moving : nullptr),
+      passes_(sph_passes(o.portable)),
+      team_(o.threads) {
   const Vec3 extent = o.high - o.low;
   const bool sound = extent.allFinite() && extent.minCoeff() > 0 && o.spacing > 0 && o.rest_density > 0 &&
                      o.sound_speed > 0 && o.viscosity >= 0 && o.capacity > 0 && o.capacity < (1u << 30) &&
@@ -73,13 +76,16 @@ SphAir::SphAir(const AirOptions& o, const AirWalls* walls)
     for (auto* values : {&chunk.x, &chunk.y, &chunk.z}) values->resize(padded);
     chunk.index.resize(padded);
   }
-  if (walls_ && !walls_->empty()) {
+  if (moving_) moving_wall_.resize(padded);
+  if (walls_) {
     const float half = 0.87f * cell_size_, reach = static_cast<float>(support_);
     for (int z = 0, i = 0; z < cells_[2]; ++z)
       for (int y = 0; y < cells_[1]; ++y)
         for (int x = 0; x < cells_[0]; ++x, ++i)
           cell_near_wall_[i] = walls_->least_near((x - 0.5f) * cell_size_, (y - 0.5f) * cell_size_,
-                                                  (z - 0.5f) * cell_size_, half) < reach;
+                                                  (z - 0.5f) * cell_size_, half) < reach
+                                   ? kStanding
+                                   : 0;
   }
 }
 
@@ -94,9 +100,9 @@ bool SphAir::add(const Vec3& position, const Vec3& velocity) {
       !(position.array() < options_.high.array()).all())
     return false;
   const Eigen::Vector3f x = place.cast<float>(), v = velocity.cast<float>();
-  if (walls_ && !walls_->empty() &&
-      walls_->sample(x.x(), x.y(), x.z()).distance < kWallGap * options_.spacing)
-    return false;
+  const double gap = kWallGap * options_.spacing;
+  if (walls_ && walls_->sample(x.x(), x.y(), x.z()).distance < gap) return false;
+  if (moving_ && moving_->sample(x.x(), x.y(), x.z()).wall.distance < gap) return false;
   density_[count_] = static_cast<float>(options_.rest_density);
   state_[count_++] = {x.x(), x.y(), x.z(), 0,
                       v.x(), v.y(), v.z(), static_cast<float>(1 / options_.rest_density)};
@@ -164,11 +170,13 @@ void SphAir::step(double dt, std::span<AirBody> bodies) {
   sort();
   if (count_ == 0) return;
   find_body_pairs(bodies);
+  if (moving_) mark_cells_near_moving();
   struct Work {
     double dt;
     std::span<AirBody> bodies;
+    void (SphAir::*move)(Chunk&, float);
     std::atomic<size_t> next_density = 0, next_move = 0;
-  } work{dt, bodies};
+  } work{dt, bodies, moving_ ? &SphAir::move<true> : &SphAir::move<false>};
   team_.run([this, &work](unsigned worker) {
     for (size_t c; (c = work.next_density.fetch_add(1)) < chunks_.size();) densities(chunks_[c]);
     team_.wait();
@@ -177,7 +185,7 @@ void SphAir::step(double dt, std::span<AirBody> bodies) {
       team_.wait();
     }
     for (size_t c; (c = work.next_move.fetch_add(1)) < chunks_.size();)
-      move(chunks_[c], static_cast<float>(work.dt));
+      (this->*work.move)(chunks_[c], static_cast<float>(work.dt));
   });
   state_.swap(sorted_);
   state_[count_] = {kFar, kFar, kFar, 0, 0, 0, 0, 0};
@@ -190,6 +198,7 @@ void SphAir::step(double dt, std::span<AirBody> bodies) {
 
 void SphAir::densities(Chunk& chunk) {
   const Candidates near{chunk.x.data(), chunk.y.data(), chunk.z.data(), chunk.index.data()};
+  const auto finish = moving_ ? &SphAir::finish_density<true> : &SphAir::finish_density<false>;
   uint32_t used = 0;
   for (uint32_t cell = chunk.first_cell; cell < chunk.last_cell; ++cell) {
     const uint32_t begin = cell_begin_[cell], end = cell_begin_[cell + 1];
@@ -205,28 +214,32 @@ void SphAir::densities(Chunk& chunk) {
     if (chunk.list.size() < room) chunk.list.resize(2 * room);
     used = passes_.density(begin, end, near, count, static_cast<int32_t>(count_), constants_, state_.data(),
                            density_.data(), list_begin_.data(), list_end_.data(), chunk.list.data(), used);
-    finish_density(begin, end, cell_near_wall_[cell]);
+    (this->*finish)(begin, end, cell_near_wall_[cell]);
   }
 }
 
-void SphAir::finish_density(uint32_t begin, uint32_t end, bool near_wall) {
+template <bool kMovingWalls>
+void SphAir::finish_density(uint32_t begin, uint32_t end, uint8_t near_wall) {
   const auto rest = static_cast<float>(options_.rest_density), h = constants_.support;
   const auto stiffness = static_cast<float>(options_.sound_speed * options_.sound_speed);
   for (uint32_t i = begin; i < end; ++i) {
     AirState& a = state_[i];
     float rho = density_[i] + extra_density_[i];
     wall_[i].distance = h;
-    if (near_wall) {
+    float share = 0;  // of the kernel that is wall
+    if (near_wall & kStanding) {
       wall_[i] = walls_->sample(a.x, a.y, a.z);
-      if (wall_[i].distance < h)
-        rho += rest * static_cast<float>(wall_integrals(wall_[i].distance / h).density);
+      if (wall_[i].distance < h) share = static_cast<float>(wall_integrals(wall_[i].distance / h).density);
     }
+    if constexpr (kMovingWalls) share += feel_moving(i, near_wall, share);
+    rho += rest * share;
     density_[i] = rho;
     a.pressure = stiffness * std::max(rho - rest, 0.0f);
     a.specific_volume = 1 / rho;
   }
 }
 
+template <bool kMovingWalls>
 void SphAir::move(Chunk& chunk, float dt) {
   passes_.force(chunk.first, chunk.last, constants_, state_.data(), list_begin_.data(), list_end_.data(),
                 chunk.list.data(), acceleration_.data());
@@ -246,6 +259,7 @@ void SphAir::move(Chunk& chunk, float dt) {
     a.vx = (a.vx + dt * (acceleration_[4 * i] + extra_acceleration_[4 * i])) * hold + push * wall.x;
     a.vy = (a.vy + dt * (acceleration_[4 * i + 1] + extra_acceleration_[4 * i + 1])) * hold + push * wall.y;
     a.vz = (a.vz + dt * (acceleration_[4 * i + 2] + extra_acceleration_[4 * i + 2])) * hold + push * wall.z;
+    if constexpr (kMovingWalls) push_off_moving(a, i, dt);
     const float speed = std::sqrt(a.vx * a.vx + a.vy * a.vy + a.vz * a.vz);
     if (speed > fastest) {
       const float cut = fastest / speed;
@@ -262,6 +276,7 @@ void SphAir::move(Chunk& chunk, float dt) {
         a.vx -= stop * wall.x, a.vy -= stop * wall.y, a.vz -= stop * wall.z;
       }
     }
+    if constexpr (kMovingWalls) keep_out_of_moving(a, i, dt);
     sorted_[i] = a;
   }
 }

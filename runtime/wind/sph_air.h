@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "runtime/wind/air_walls.h"
+#include "runtime/wind/moving_walls.h"
 #include "runtime/wind/sph_pass.h"
 #include "runtime/wind/worker_team.h"
 
@@ -41,8 +41,10 @@ struct AirBody {
 
 class SphAir {
  public:
-  /// Throws Error{Input} for values out of range. Walls must outlive the air; null: none.
-  explicit SphAir(const AirOptions& options, const AirWalls* walls = nullptr);
+  /// Throws Error{Input} for values out of range. Walls must outlive the air; null: none. Moving ones are to
+  /// be placed before each step where they are at its begin.
+  explicit SphAir(const AirOptions& options, const AirWalls* walls = nullptr,
+                  const MovingWalls* moving = nullptr);
   ~SphAir();
 
   /// A new particle; false when there is no room for it, outside of the domain or in a solid.
@@ -65,7 +67,8 @@ class SphAir {
   double support() const { return support_; }             ///< h, m
   Vec3 momentum() const;                                  ///< kg·m/s, summed in double
   size_t limited() const { return limited_; }  ///< velocities cut to 2 c so far; 0 in normal motion
-  size_t left() const { return left_; }        ///< particles that left the domain so far
+  /// Particles that left the domain so far, or that moving walls ran over or crushed.
+  size_t left() const { return left_; }
   const AirOptions& options() const { return options_; }
 
   /// The particles in the cells that a box touches: calls visit(first, last) for ranges of indices. The box
@@ -80,7 +83,9 @@ class SphAir {
   const float* zs() const { return z_.data(); }
 
  private:
-  struct Chunk {  // particles of some neighbouring cells: one task
+  static constexpr uint8_t kStanding = 1, kMoving = 2;
+  static constexpr double kWallGap = 0.25;  // of the spacing: nearer to a solid no particle comes
+  struct Chunk {                            // particles of some neighbouring cells: one task
     uint32_t first_cell, last_cell, first, last;
     std::vector<int32_t> list;
     std::vector<float> x, y, z;  // candidates of the cell at hand
@@ -95,11 +100,18 @@ class SphAir {
   void find_body_pairs(std::span<const AirBody> bodies);
   void push_bodies(std::span<AirBody> bodies, double dt);
   void densities(Chunk& chunk);
-  void finish_density(uint32_t begin, uint32_t end, bool near_wall);
+  template <bool kMovingWalls>
+  void finish_density(uint32_t begin, uint32_t end, uint8_t near_wall);
+  template <bool kMovingWalls>
   void move(Chunk& chunk, float dt);
+  void mark_cells_near_moving();
+  float feel_moving(uint32_t i, uint8_t near_wall, float share);
+  void push_off_moving(AirState& a, uint32_t i, float dt) const;
+  void keep_out_of_moving(AirState& a, uint32_t i, float dt) const;
 
   AirOptions options_;
-  const AirWalls* walls_;
+  const AirWalls* walls_;      // null: none
+  const MovingWalls* moving_;  // null: none
   const SphPasses& passes_;
   WorkerTeam team_;
   double support_, mass_, longest_step_;
@@ -110,8 +122,9 @@ class SphAir {
   std::vector<AirState> state_, sorted_;
   std::vector<float> x_, y_, z_, density_, acceleration_, extra_density_, extra_acceleration_;
   std::vector<AirWalls::Sample> wall_;
+  std::vector<MovingWalls::Sample> moving_wall_;
   std::vector<uint32_t> key_, cell_begin_, list_begin_, list_end_;
-  std::vector<uint8_t> cell_near_wall_;
+  std::vector<uint8_t> cell_near_wall_;  // of kStanding and kMoving
   std::vector<Chunk> chunks_;
   std::vector<BodyPair> body_pairs_;
 };

@@ -9,6 +9,9 @@
 namespace liana {
 namespace {
 
+constexpr double kWallWay = 0.5;       // of the spacing: farther no wall moves in a substep
+constexpr double kMostForWalls = 100;  // substeps; what is faster runs over air rather than pushing it
+
 std::vector<Emitter> emitters_of(const SphWindParameters& p) {
   std::vector<Emitter> emitters;
   for (size_t i = 0; i < p.emitters.size(); ++i) emitters.emplace_back(p.emitters[i], p.seed + i);
@@ -40,22 +43,27 @@ AirOptions air_of(const SphWindParameters& p, const std::vector<Emitter>& emitte
 }  // namespace
 
 SphWind::SphWind(const SphWindParameters& p, std::span<const SdfObstacle* const> solids,
-                 std::optional<double> ground_height)
+                 std::optional<double> ground_height, std::span<const SdfObstacle* const> moving)
     : emitters_(emitters_of(p)),
       // Beyond the support by a cell's diagonal, so that cells far from solids are known as such.
       walls_(p.low, p.high, p.spacing / 2, 4 * p.spacing, solids, ground_height, p.threads),
-      air_(air_of(p, emitters_), &walls_) {
+      moving_(p.low, p.spacing / 2, 4 * p.spacing, moving, p.threads),
+      air_(air_of(p, emitters_), &walls_, &moving_) {
   air_.sort();
 }
 
 int SphWind::substeps(double dt) const {
-  return std::max(1, static_cast<int>(std::ceil(dt / air_.longest_step() - 1e-9)));
+  const double by_air = dt / air_.longest_step();
+  const double by_walls =
+      moving_.empty() ? 0 : dt * moving_.top_speed(air_.options().high) / (kWallWay * air_.options().spacing);
+  return std::max(1, static_cast<int>(std::ceil(std::max(by_air, std::min(by_walls, kMostForWalls)) - 1e-9)));
 }
 
 void SphWind::step(double dt, std::span<AirBody> bodies) {
   const int parts = substeps(dt);
   const double h = dt / parts;
   for (int part = 0; part < parts; ++part) {
+    moving_.place(dt - part * h);
     for (Emitter& emitter : emitters_) {
       const size_t before = air_.size();
       report_.refused += emitter.emit(air_, time_, h);

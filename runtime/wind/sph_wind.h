@@ -26,17 +26,19 @@ struct SphWindReport {
   size_t particles = 0;
   size_t substeps = 0;
   size_t emitted = 0, refused = 0;  ///< refused: no room in the domain, or an emitter in a solid
-  size_t left = 0;                  ///< out of the domain, their places free for new ones
+  size_t left = 0;                  ///< out of the domain or crushed, their places free for new ones
   size_t limited = 0;               ///< velocities that had to be cut to twice the speed of sound
 };
 
 class SphWind : public WindField {
  public:
-  /// Solids must outlive it and stand still. Throws Error{Input} for values out of range.
+  /// Solids must outlive it; those that are ever placed anew are `moving`. Throws Error{Input} for values out
+  /// of range.
   explicit SphWind(const SphWindParameters& parameters, std::span<const SdfObstacle* const> solids = {},
-                   std::optional<double> ground_height = {});
+                   std::optional<double> ground_height = {}, std::span<const SdfObstacle* const> moving = {});
 
-  /// Lets dt (s) pass in as many equal substeps as the air needs. Bodies gather impulses.
+  /// Lets dt (s) pass in as many equal substeps as the air needs. Bodies gather impulses. Moving solids are
+  /// to be where they are at its end, with the velocities that bring them there.
   void step(double dt, std::span<AirBody> bodies = {});
   int substeps(double dt) const;
 
@@ -51,6 +53,7 @@ class SphWind : public WindField {
  private:
   std::vector<Emitter> emitters_;
   AirWalls walls_;
+  MovingWalls moving_;
   SphAir air_;
   double time_ = 0;
   SphWindReport report_;

@@ -5,6 +5,7 @@
 #include <ctime>
 
 #include "mesher/base/random.h"
+#include "runtime/sim/collision/box_mesh.h"
 #include "runtime/sim/plant_from_bake.h"
 #include "runtime/wind/plant_coupling.h"
 #include "runtime/wind/sph_kernels.h"
@@ -19,7 +20,7 @@ double processor_seconds() {
 }
 
 /// A cube of disordered air that holds together: it moves through nothing, at rest density.
-SphAir make_air(size_t count, unsigned threads, bool portable = false) {
+AirOptions air_options(size_t count, unsigned threads, bool portable = false) {
   const int n = static_cast<int>(std::cbrt(static_cast<double>(count)) + 0.5);
   AirOptions options;
   options.low = Vec3::Zero(), options.high = Vec3::Constant(0.1 * n + 2);
@@ -28,7 +29,7 @@ SphAir make_air(size_t count, unsigned threads, bool portable = false) {
   options.capacity = static_cast<size_t>(n) * n * n;
   options.threads = threads;
   options.portable = portable;
-  return SphAir(options);
+  return options;
 }
 
 void fill(SphAir& air) {
@@ -42,7 +43,7 @@ void fill(SphAir& air) {
 }
 
 void air_step(benchmark::State& state) {
-  SphAir air = make_air(static_cast<size_t>(state.range(0)), static_cast<unsigned>(state.range(1)));
+  SphAir air(air_options(static_cast<size_t>(state.range(0)), static_cast<unsigned>(state.range(1))));
   fill(air);
   for (int i = 0; i < 5; ++i) air.step(air.longest_step());
   const double start = processor_seconds();
@@ -65,7 +66,7 @@ BENCHMARK(air_step)
 
 /// The same sums by cells of linked lists, one pair at a time: what the fast version is compared with.
 void naive_air_step(benchmark::State& state) {
-  SphAir air = make_air(static_cast<size_t>(state.range(0)), 1);
+  SphAir air(air_options(static_cast<size_t>(state.range(0)), 1));
   fill(air);
   air.sort();
   const size_t n = air.size();
@@ -173,6 +174,29 @@ BENCHMARK(wind_frame)
     ->Args({20000, 2, 0})
     ->Args({10000, 2, 10000})
     ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+/// A substep of air in which boxes move, a few spacings wide each. Arguments: air particles, boxes.
+void air_step_by_moving_boxes(benchmark::State& state) {
+  const Vec3 half = Vec3::Constant(0.25);
+  SdfObstacle box(box_mesh(-half, half), {.voxel = 0.03});
+  const std::vector<const SdfObstacle*> boxes(static_cast<size_t>(state.range(1)), &box);
+  AirOptions options = air_options(static_cast<size_t>(state.range(0)), 1);
+  MovingWalls walls(options.low, options.spacing / 2, 4 * options.spacing, boxes, 1);
+  SphAir air(options, nullptr, &walls);
+  box.place({.position = options.high / 2, .centre = options.high / 2, .angular_velocity = {0, 1, 0}});
+  walls.place(0);
+  fill(air);
+  for (int i = 0; i < 5; ++i) walls.place(0), air.step(air.longest_step());
+  const double start = processor_seconds();
+  size_t done = 0;
+  for (auto _ : state) walls.place(0), air.step(air.longest_step()), done += air.size();
+  state.counters["ns_per_particle_step"] = 1e9 * (processor_seconds() - start) / static_cast<double>(done);
+}
+BENCHMARK(air_step_by_moving_boxes)
+    ->Args({10000, 0})
+    ->Args({10000, 1})
+    ->Args({10000, 8})
     ->Unit(benchmark::kMillisecond);
 
 /// The ambient wind at the particles of plants.

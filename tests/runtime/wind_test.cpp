@@ -197,5 +197,23 @@ TEST(ShelteredWind, DiesDownAtAWallAndDoesNotBlowThroughIt) {
     EXPECT_GT(wind.velocity({0, 2, d + 0.01}, 0).norm(), wind.velocity({0, 2, d}, 0).norm());
 }
 
+TEST(ShelteredWind, FollowsAWallThatMovesAndIsTakenAlongByIt) {
+  const EvenWind open({2, 0, -3});
+  SdfObstacle wall(box_mesh({-2, -1, -0.2}, {2, 4, 0}));
+  const ShelteredWind wind(open, {&wall}, {});
+  const Vec3 before = wind.velocity({0, 2, 0.03}, 0);
+  wall.place({.position = {0, 0, 1}, .centre = {0, 0, 1}});
+  EXPECT_LT(wind.velocity({0, 2, 0.9}, 0).norm(), 1e-6) << "inside now";
+  EXPECT_LT((wind.velocity({0, 2, 1.03}, 0) - before).norm(), 1e-6);
+  // Galilei: wind and wall with a velocity more give that velocity more.
+  const Vec3 more(0.5, 1, 2), faster_wind = Vec3(2, 0, -3) + more;
+  const EvenWind faster(faster_wind);
+  const ShelteredWind moved(faster, {&wall}, {});
+  wall.place({.position = {0, 0, 1}, .centre = {0, 0, 1}, .velocity = more});
+  EXPECT_LT((moved.velocity({0, 2, 1.03}, 0) - before - more).norm(), 1e-6);
+  EXPECT_LT((moved.velocity({0, 2, 0.99}, 0) - more).norm(), 1e-6) << "no slip";
+  EXPECT_LT((moved.velocity({0, 2, 3}, 0) - faster_wind).norm(), 1e-12) << "far from it";
+}
+
 }  // namespace
 }  // namespace liana
