@@ -160,7 +160,8 @@ void SessionReplay::act(const Act& act, World& world) {
 void SessionReplay::step(World& world) {
   const size_t index = world.stats().steps;
   require(index < steps_.size(), "SessionReplay::step: the session is over");
-  const char* other = "the scene, its bakes and species, and this version of liana: all as when it was recorded";
+  const char* other =
+      "the scene, its bakes and species, and this version of liana: all as when it was recorded";
   if (index == 0 && world.time_step() != time_step_)
     fail(1, fmt::format("steps of {} s, but the scene takes {} s", time_step_, world.time_step()), other);
   if (const std::string now = hash_text(world.state_hash()); index == 0 && now != start_)

@@ -12,6 +12,7 @@
 #include "mesher/base/nearest_word.h"
 #include "mesher/base/parallel.h"
 #include "mesher/base/stopwatch.h"
+#include "runtime/scene/touching_solids.h"
 #include "runtime/sim/collision/shells.h"
 #include "runtime/sim/plant_from_bake.h"
 #include "runtime/sim/state_hash.h"
@@ -24,30 +25,46 @@ constexpr size_t kLarge = 1000;         // particles of a plant whose step is wo
 constexpr size_t kMostBreaksAStep = 8;  // of one plant; what remains overloaded breaks in the next
 constexpr double kGroundHeight = 0;     // m: the ground is level, as the renderer draws it
 
-/// owner: for each of them, which obstacle of the scene it belongs to.
+/// Those that move first; `owner`: for each of these, which obstacle of the scene it belongs to.
 std::vector<std::unique_ptr<SdfObstacle>> obstacles_of(const Scene& scene, std::vector<size_t>& owner,
                                                        std::vector<std::string>& notes) {
-  std::vector<std::unique_ptr<SdfObstacle>> obstacles;
+  std::vector<std::unique_ptr<SdfObstacle>> obstacles, sheets;
+  std::vector<StandingSolid> standing;
   for (const SceneObstacle& obstacle : scene.obstacles) {
     try {
-      ShellOptions options{.feel = obstacle.feel};
-      options.thickness = obstacle.thickness.value_or(options.thickness);
-      Shells shells = obstacles_from(obstacle.mesh, options);
-      if (shells.sheets > 0 && !obstacle.thickness)
+      const Pieces pieces = pieces_of(obstacle.mesh);
+      const double thickness = obstacle.thickness.value_or(ShellOptions().thickness);
+      if (pieces.sheet_count > 0 && !obstacle.thickness)
         notes.push_back(fmt::format(
             "obstacle '{}': {} of its {} pieces have no inside and count as sheets {} mm thick "
             "('thickness' sets it)",
-            obstacle.name, shells.sheets, shells.solids + shells.sheets, 1e3 * options.thickness));
-      for (auto& shell : shells.obstacles) {
+            obstacle.name, pieces.sheet_count, pieces.solids.size() + pieces.sheet_count, 1e3 * thickness));
+      for (const Mesh& solid : pieces.solids) {
+        if (!obstacle.motion) {
+          standing.push_back({solid, obstacle.feel});
+          continue;
+        }
         owner.push_back(&obstacle - scene.obstacles.data());
-        obstacles.push_back(std::move(shell));
+        obstacles.push_back(std::make_unique<SdfObstacle>(solid));
+        obstacles.back()->feel = obstacle.feel;
       }
+      if (pieces.sheet_count == 0) continue;
+      auto sheet = std::make_unique<SdfObstacle>(pieces.sheets, SdfOptions{.sheet = thickness});
+      sheet->feel = obstacle.feel;
+      if (obstacle.motion) owner.push_back(&obstacle - scene.obstacles.data());
+      (obstacle.motion ? obstacles : sheets).push_back(std::move(sheet));
     } catch (const Error& error) {
       throw Error(error.kind,
                   fmt::format("{}: obstacle '{}': {}", scene.file.string(), obstacle.name, error.what()),
                   error.hint);
     }
   }
+  unite_touching(standing);
+  for (const StandingSolid& solid : standing) {
+    obstacles.push_back(std::make_unique<SdfObstacle>(solid.mesh, SdfOptions{.voxel = solid.voxel}));
+    obstacles.back()->feel = solid.feel;
+  }
+  for (auto& sheet : sheets) obstacles.push_back(std::move(sheet));
   return obstacles;
 }
 
@@ -180,14 +197,14 @@ void World::add_climber(const SceneClimber& entry, uint64_t seed) {
 std::vector<const SdfObstacle*> World::those_that_move(bool move) const {
   std::vector<const SdfObstacle*> those;
   for (size_t i = 0; i < solids_.size(); ++i)
-    if (scene_.obstacles[obstacle_of_[i]].motion.has_value() == move) those.push_back(solids_[i]);
+    if ((i < obstacle_of_.size()) == move) those.push_back(solids_[i]);
   return those;
 }
 
 void World::move_obstacles() {
-  for (size_t i = 0; i < obstacles_.size(); ++i)
-    if (const auto& motion = scene_.obstacles[obstacle_of_[i]].motion)
-      obstacles_[i]->place(motion->between(time(), time() + scene_.time_step));
+  for (size_t i = 0; i < obstacle_of_.size(); ++i)
+    obstacles_[i]->place(
+        scene_.obstacles[obstacle_of_[i]].motion->between(time(), time() + scene_.time_step));
 }
 
 void World::step() {

@@ -40,7 +40,7 @@ struct WorldReport {
   size_t lost_steps = 0;             ///< steps that did not stay finite and were stopped
   size_t broken = 0, shed = 0, cut = 0;  ///< branches and leaves that broke off, parts cut off
   size_t fallen = 0, asleep = 0;         ///< such parts that are there now, and how many of them lie still
-  size_t removed = 0;  ///< taken away: after their time at rest, or blown out of the scene
+  size_t removed = 0;                    ///< taken away: after their time at rest, or blown out of the scene
   PhaseSeconds seconds;
 };
 
@@ -131,7 +131,7 @@ class World final : public Simulation {
   Scene scene_;
   std::vector<std::string> notes_;
   unsigned threads_;
-  std::vector<size_t> obstacle_of_;  // of each solid, in the scene
+  std::vector<size_t> obstacle_of_;  // of the solids that move, which come first: in the scene
   std::vector<std::unique_ptr<SdfObstacle>> obstacles_;
   std::vector<const SdfObstacle*> solids_;
   PlantContacts touching_;

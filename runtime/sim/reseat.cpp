@@ -8,11 +8,11 @@
 namespace liana {
 namespace {
 
-double kinetic_energy(const Plant& plant) {
+double kinetic_energy(const Plant& plant, const std::vector<Motion>& motion) {
   double sum = 0;
   for (size_t i = 0; i < plant.particles.size(); ++i) {
     const Particle& particle = plant.particles[i];
-    const Motion& m = plant.motion[i];
+    const Motion& m = motion[i];
     const Vec3 spin = m.orientation.conjugate() * m.angular_velocity;
     sum += particle.mass * m.velocity.squaredNorm() + particle.inertia.dot(spin.cwiseAbs2());
   }
@@ -21,8 +21,8 @@ double kinetic_energy(const Plant& plant) {
 
 }  // namespace
 
-int reseat(Plant& plant, double gap_limit) {
-  const double before = kinetic_energy(plant);
+int reseat(Plant& plant, const std::vector<Motion>& start, double gap_limit) {
+  const double before = kinetic_energy(plant, start);
   int closed = 0;
   for (size_t i = 0; i < plant.particles.size(); ++i) {
     const Particle& particle = plant.particles[i];
@@ -44,7 +44,7 @@ int reseat(Plant& plant, double gap_limit) {
     m.position += open;
     m.velocity = velocity - m.angular_velocity.cross(lever);
   }
-  const double after = kinetic_energy(plant);
+  const double after = kinetic_energy(plant, plant.motion);
   if (after > before) {
     const double slower = std::sqrt(before / after);
     for (Motion& m : plant.motion) m.velocity *= slower, m.angular_velocity *= slower;

@@ -7,8 +7,8 @@ namespace liana {
 
 /// From the root on: every particle whose joint is open by more than gap_limit (of its gap_scale()) is moved,
 /// unturned, to where the joint is closed, and takes the joint's velocity. All else keeps its place relative
-/// to its parent. Kinetic energy does not grow; accelerations are forgotten. Returns how many joints were
-/// closed.
-int reseat(Plant& plant, double gap_limit);
+/// to its parent. The step gains no kinetic energy over its `start`; accelerations are forgotten. Returns how
+/// many joints were closed.
+int reseat(Plant& plant, const std::vector<Motion>& start, double gap_limit);
 
 }  // namespace liana

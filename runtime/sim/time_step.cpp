@@ -231,7 +231,7 @@ StepReport PlantStepper::step_from(Plant& plant, std::span<const Wrench> externa
   if (report.finite) {
     plant.motion.swap(next_);
     if (!report.gap_held && options.most_redo_substeps > 1)
-      report.reseated = reseat(plant, options.gap_limit);
+      report.reseated = reseat(plant, next_, options.gap_limit);
     if (plant.anchors.empty() && transient.empty() && external.empty()) keep_angular_momentum(next_, plant);
   } else {
     next_ = plant.motion;

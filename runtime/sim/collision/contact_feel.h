@@ -12,6 +12,8 @@ namespace liana {
 struct ContactFeel {
   double friction = 0.6;  ///< Coulomb's coefficient: a push of the normal force times this holds
   double elasticity = 0;  ///< speed of leaving over that of arriving, along the normal
+
+  bool operator==(const ContactFeel&) const = default;
 };
 
 /// Sliding goes over into holding, and back, with one step's delay.

@@ -62,7 +62,7 @@ void judge(Piece& piece) {
 
 }  // namespace
 
-Shells obstacles_from(const Mesh& mesh, const ShellOptions& options) {
+Pieces pieces_of(const Mesh& mesh, size_t most_solids) {
   std::vector<Piece> pieces = connected_pieces(ClosedMesh(mesh, true).mesh());
   std::vector<double> volumes;
   for (Piece& piece : pieces) {
@@ -70,24 +70,31 @@ Shells obstacles_from(const Mesh& mesh, const ShellOptions& options) {
     if (piece.solid) volumes.push_back(piece.volume);
   }
   std::sort(volumes.rbegin(), volumes.rend());
-  const double least = volumes.size() > options.most_solids ? volumes[options.most_solids - 1] : 0;
+  const double least = volumes.size() > most_solids ? volumes[most_solids - 1] : 0;
 
-  Shells shells;
-  Mesh rest;
+  Pieces result;
+  Mesh& rest = result.sheets;
   for (Piece& piece : pieces) {
-    if (piece.solid && piece.volume >= least && shells.solids < options.most_solids) {
-      shells.obstacles.push_back(std::make_unique<SdfObstacle>(piece.mesh));
-      ++shells.solids;
+    if (piece.solid && piece.volume >= least && result.solids.size() < most_solids) {
+      result.solids.push_back(std::move(piece.mesh));
       continue;
     }
     const auto first = static_cast<uint32_t>(rest.positions.size());
     rest.positions.insert(rest.positions.end(), piece.mesh.positions.begin(), piece.mesh.positions.end());
     for (const Triangle& t : piece.mesh.triangles)
       rest.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-    ++shells.sheets;
+    ++result.sheet_count;
   }
+  return result;
+}
+
+Shells obstacles_from(const Mesh& mesh, const ShellOptions& options) {
+  const Pieces pieces = pieces_of(mesh, options.most_solids);
+  Shells shells{.obstacles = {}, .solids = pieces.solids.size(), .sheets = pieces.sheet_count};
+  for (const Mesh& solid : pieces.solids) shells.obstacles.push_back(std::make_unique<SdfObstacle>(solid));
   if (shells.sheets > 0)
-    shells.obstacles.push_back(std::make_unique<SdfObstacle>(rest, SdfOptions{.sheet = options.thickness}));
+    shells.obstacles.push_back(
+        std::make_unique<SdfObstacle>(pieces.sheets, SdfOptions{.sheet = options.thickness}));
   for (const auto& obstacle : shells.obstacles) obstacle->feel = options.feel;
   return shells;
 }

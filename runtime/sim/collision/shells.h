@@ -14,14 +14,23 @@ struct ShellOptions {
   ContactFeel feel = {};
 };
 
+/// A mesh as what has an inside and what has not.
+struct Pieces {
+  std::vector<Mesh> solids;  ///< closed, outward, connected
+  Mesh sheets;               ///< all others
+  size_t sheet_count = 0;    ///< connected pieces of those
+};
+
+/// Splits a mesh into its connected pieces. Throws Error{Input} for an empty or non-finite mesh.
+Pieces pieces_of(const Mesh& mesh, size_t most_solids = ShellOptions().most_solids);
+
 struct Shells {
   std::vector<std::unique_ptr<SdfObstacle>> obstacles;
   size_t solids = 0;  ///< closed shells that are solid
   size_t sheets = 0;  ///< connected pieces that count as sheets
 };
 
-/// Splits a mesh into its connected pieces: closed ones that look outwards become one solid each, all others
-/// together one obstacle of sheets. Throws Error{Input} for an empty or non-finite mesh.
+/// Solids become one obstacle each, sheets all together one. Throws as pieces_of().
 Shells obstacles_from(const Mesh& mesh, const ShellOptions& options = {});
 
 }  // namespace liana
