@@ -9,6 +9,7 @@
 #include "materials/law/species_law.h"
 #include "runtime/growth/anchors.h"
 #include "runtime/growth/crowding.h"
+#include "runtime/growth/grown_weight.h"
 #include "runtime/growth/leaves.h"
 #include "runtime/growth/segments.h"
 #include "runtime/growth/shoot_growth.h"
@@ -70,6 +71,7 @@ class Climber {
   bool may_grow(const Plant& plant, int level) const;
   void start_shoot(Plant& plant, const Attachment& at, BranchId parent, const Vec3& direction, Shoot shoot);
   ParticleId append_stem(Plant& plant, const Shoot& shoot, const Attachment& at, const Quat& orientation);
+  void set_tip_mass(Plant& plant, ParticleId id) const;
   void finish_node(Plant& plant, size_t shoot, const Surroundings& around);
   void break_bud_below_cut(Plant& plant, size_t shoot, const Surroundings& around);
   void hold_on_again(Plant& plant, const Surroundings& around);
@@ -91,6 +93,7 @@ class Climber {
   };
   std::vector<ByJoint> stiffness_;  // N/m, N·m/rad, per particle, before the present call
   std::vector<ByJoint> kept_;       // N, N·m, per particle
+  std::vector<JointLoad> uncarried_, uncarried_now_;  // per particle, before the present call and in it
   HeldChain chain_;
   std::vector<Motion> rest_;
   bool germinated_ = false;
