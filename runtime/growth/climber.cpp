@@ -14,6 +14,7 @@ namespace liana {
 namespace {
 
 constexpr double kYoungestSegment = 0.25;  // length of a new particle, of a full-grown one's
+constexpr double kNewbornMass = 0.02;      // of a full-grown one's: what it weighs at first nobody sees
 constexpr double kLongestStep = 0.05;      // growth s; longer ones are cut
 constexpr double kUnseenJump = 0.01;       // of a tip's speed, that a step's calibration may change it by
 constexpr double kMostAtOnce = 0.01;      // of a stiffness, beyond what its growth changes it by in that step
@@ -69,6 +70,10 @@ GrowthReport Climber::grow(Plant& plant, std::span<const SdfObstacle* const> obs
   const Surroundings around{obstacles, to_sun.normalized(), seed_.y()};
   if (!germinated_) germinate(plant, around);
   if (plant.particles.empty()) return {.released = anchors_.released()};  // all of it was cut
+  // What weight the joints feel before this growth; keep_loads() bears what comes to that.
+  const Vec3 shaped_by = parameters_.weight_grown_in * parameters_.gravity;
+  carry_grown_weight(plant, shaped_by, rest_);
+  uncarried_weight(plant, parameters_.gravity, uncarried_);
   note_stiffness(plant);
   const int parts = std::max(1, static_cast<int>(std::ceil(dt / kLongestStep - 1e-9)));
   for (int i = 0; i < parts; ++i) grow_once(plant, around, dt / parts);
@@ -76,7 +81,7 @@ GrowthReport Climber::grow(Plant& plant, std::span<const SdfObstacle* const> obs
 
   GrowthReport report;
   recalibrate_changed(plant, dt, report);
-  carry_grown_weight(plant, parameters_.weight_grown_in * parameters_.gravity, rest_);
+  carry_grown_weight(plant, shaped_by, rest_);
   keep_loads(plant, dt);
   report.tips = std::count_if(shoots_.begin(), shoots_.end(), [](const Shoot& s) { return s.growing; });
   report.leaves = leaves_.count();
@@ -158,7 +163,7 @@ ParticleId Climber::append_stem(Plant& plant, const Shoot& shoot, const Attachme
   young_radius_[id.index()] = shoot.tip_radius;
   joint_length_[id.index()] = parameters_.segment_length;
   Particle& particle = plant.particles[id.index()];
-  set_mass(particle, DomainKind::Branch, law_.default_material.density * branch.material.mass_scaling);
+  set_tip_mass(plant, id);
   // For its full length, so that lengthening does not change it.
   const ElasticMaterial& material = law_.default_material;
   set_section(
@@ -171,6 +176,15 @@ ParticleId Climber::append_stem(Plant& plant, const Shoot& shoot, const Attachme
     particle.stiffness_damping = before.stiffness_damping;
   }
   return id;
+}
+
+// A segment is born with a length, but grows from hardly any mass to its own while it lengthens.
+void Climber::set_tip_mass(Plant& plant, ParticleId id) const {
+  Particle& tip = plant.particles[id.index()];
+  const double share = 2 * tip.half_length / parameters_.segment_length;
+  const double grown = std::max(kNewbornMass, (share - kYoungestSegment) / (1 - kYoungestSegment));
+  const double scaling = plant.branches[tip.branch.index()].material.mass_scaling;
+  set_mass(tip, DomainKind::Branch, law_.default_material.density * scaling * grown / share);
 }
 
 // A particle is full-grown: it holds on, bears a leaf and perhaps lateral shoots, and the tip goes on from
@@ -287,7 +301,8 @@ void Climber::note_stiffness(const Plant& plant) {
   }
 }
 
-// A joint whose stiffness changed while it is bent exerts what it did, and forgets that slowly.
+// A joint whose stiffness changed while it is bent exerts what it did, and bears what grew beyond it where
+// that is now, not where it would be at rest; it forgets both slowly.
 void Climber::keep_loads(Plant& plant, double dt) {
   const auto pose = [&](ParticleId p) {
     const Motion& m = plant.motion[p.index()];
@@ -295,11 +310,21 @@ void Climber::keep_loads(Plant& plant, double dt) {
   };
   kept_.resize(plant.particles.size(), {Vec3::Zero(), Vec3::Zero()});
   const double left = std::exp(-dt / kForget);
-  for (size_t i = 0; i < stiffness_.size(); ++i) {
+  uncarried_weight(plant, parameters_.gravity, uncarried_now_);
+  for (size_t i = 0; i < plant.particles.size(); ++i) {
     Particle& particle = plant.particles[i];
     Joint& joint = particle.joint;
     ByJoint& kept = kept_[i];
     kept.shear *= left, kept.bend *= left;
+    kept.shear += uncarried_now_[i].force;
+    kept.bend += uncarried_now_[i].moment;
+    if (i >= stiffness_.size()) {  // newborn
+      joint.rest_force += kept.shear;
+      joint.rest_moment += kept.bend;
+      continue;
+    }
+    kept.shear -= uncarried_[i].force;
+    kept.bend -= uncarried_[i].moment;
     const Vec3 shear = joint.shear_stiffness - stiffness_[i].shear,
                bend = joint.bend_stiffness - stiffness_[i].bend;
     if (!shear.isZero(0) || !bend.isZero(0)) {
@@ -318,9 +343,7 @@ void Climber::keep_loads(Plant& plant, double dt) {
 void Climber::recalibrate_changed(Plant& plant, double dt, GrowthReport& report) {
   for (const Shoot& shoot : shoots_) {
     if (!shoot.growing) continue;
-    const Branch& branch = plant.branches[shoot.branch.index()];
-    Particle& tip = plant.particles[branch.particles.back().index()];
-    set_mass(tip, branch.kind, law_.default_material.density * branch.material.mass_scaling);
+    set_tip_mass(plant, plant.branches[shoot.branch.index()].particles.back());
   }
   const std::vector<double> carried = carried_masses(plant);
   calibrated_.resize(plant.branches.size());

@@ -73,6 +73,7 @@ class Climber {
                    const Surroundings& around);
   ParticleId append_stem(Plant& plant, const Shoot& shoot, const Attachment& at, Quat orientation,
                          const Surroundings& around);
+  void set_tip_mass(Plant& plant, ParticleId id) const;
   void finish_node(Plant& plant, size_t shoot, const Surroundings& around);
   void break_bud_below_cut(Plant& plant, size_t shoot, const Surroundings& around);
   void hold_on_again(Plant& plant, const Surroundings& around);
@@ -99,6 +100,7 @@ class Climber {
   };
   std::vector<ByJoint> stiffness_;  // N/m, N·m/rad, per particle, as the last call left it
   std::vector<ByJoint> kept_;       // N, N·m, per particle
+  std::vector<JointLoad> uncarried_, uncarried_now_;  // per particle, before the present call and in it
   HeldChain chain_;
   std::vector<RestPose> rest_;
   bool germinated_ = false;

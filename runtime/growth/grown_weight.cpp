@@ -26,4 +26,25 @@ void carry_grown_weight(Plant& plant, const Vec3& gravity, std::vector<RestPose>
   }
 }
 
+void uncarried_weight(const Plant& plant, const Vec3& gravity, std::vector<JointLoad>& loads) {
+  loads.assign(plant.particles.size(), {Vec3::Zero(), Vec3::Zero()});
+  for (size_t i = loads.size(); i-- > 0;) {
+    const Particle& particle = plant.particles[i];
+    const Motion& motion = plant.motion[i];
+    auto& [force, moment] = loads[i];  // the weight beyond, and its moment about the origin
+    force += particle.mass * gravity;
+    moment += motion.position.cross(particle.mass * gravity);
+    Quat frame = particle.joint.rest;
+    if (particle.parent.valid()) {
+      frame = plant.motion[particle.parent.index()].orientation * frame;
+      loads[particle.parent.index()].force += force;
+      loads[particle.parent.index()].moment += moment;
+    }
+    const Vec3 joint = motion.position + motion.orientation * particle.joint.on_self;
+    const Vec3 at_joint = moment - joint.cross(force);
+    force = frame.conjugate() * -force - particle.joint.rest_force;
+    moment = frame.conjugate() * -at_joint - particle.joint.rest_moment;
+  }
+}
+
 }  // namespace liana

@@ -17,4 +17,12 @@ struct RestPose {
 /// carry nothing at rest. gravity in m/s². `rest` is working memory.
 void carry_grown_weight(Plant& plant, const Vec3& gravity, std::vector<RestPose>& rest);
 
+/// In a joint's frame, as Joint's rest_force and rest_moment.
+struct JointLoad {
+  Vec3 force, moment;  ///< N, N·m
+};
+
+/// What the weight beyond each joint, where it is now, asks of the joint beyond its rest load.
+void uncarried_weight(const Plant& plant, const Vec3& gravity, std::vector<JointLoad>& loads);
+
 }  // namespace liana

@@ -14,7 +14,7 @@ namespace {
 
 class BentClimber : public ::testing::Test {
  protected:
-  BentClimber() : climber_(parameters(), law(), Vec3::Zero(), 5) {
+  explicit BentClimber(const ClimberParameters& p = parameters()) : climber_(p, law(), Vec3::Zero(), 5) {
     for (int i = 0; i < 360; ++i) step(true);
     for (const Particle& p : plant_.particles) load_.push_back({.force = p.mass * Vec3(2, 0, 1)});
     for (int i = 0; i < 1200; ++i) step(false);
@@ -139,6 +139,54 @@ TEST_F(BentClimber, RecalibratedTipsJumpByLessThanAHundredthOfTheirSwing) {
   EXPECT_LT(leaves, 0.01);
   RecordProperty("worst_jump_of_a_stem", std::to_string(stems));
   RecordProperty("worst_jump_of_a_leaf", std::to_string(leaves));
+}
+
+/// Its tips and leaves keep to their course: one that turns towards the light moves what bears it.
+class BentStraightClimber : public BentClimber {
+ protected:
+  BentStraightClimber() : BentClimber(straight()) {}
+  static ClimberParameters straight() {
+    ClimberParameters p = parameters();
+    p.tropisms.surface_adaption = p.tropisms.phototropism = p.tropisms.climbing = p.tropisms.wander = 0;
+    p.leaves.phototropism = 0;
+    return p;
+  }
+  /// A second of growth, each step against the plant left as it is in that step: the largest difference of a
+  /// tip's velocity, over the fastest it swings.
+  double jump_by_growth(bool loaded) {
+    const std::vector<double> speeds = swing();
+    double worst = 0;
+    for (int i = 0; i < 40; ++i) {
+      Plant same = plant_;
+      climber_.grow(plant_, {}, Vec3::UnitY(), plant_.scheme.dt);
+      std::vector<Wrench> load(loaded ? load_ : std::vector<Wrench>()), grown_load = load;
+      load.resize(same.particles.size()), grown_load.resize(plant_.particles.size());
+      PlantStepper().step(same, load, {}, {});
+      PlantStepper().step(plant_, grown_load, {}, {});
+      for (const Branch& branch : same.branches) {
+        const size_t tip = branch.particles.back().index();
+        if (tip >= speeds.size()) continue;
+        const Vec3 change = plant_.motion[tip].velocity - same.motion[tip].velocity;
+        worst = std::max(worst, change.norm() / speeds[tip]);
+      }
+    }
+    return worst;
+  }
+};
+
+// Nodes, leaves and lateral shoots are born, stems thicken, leaves unfold.
+TEST_F(BentStraightClimber, GrowsWhileItIsHeldBentWithoutAJump) {
+  const size_t before = plant_.particles.size();
+  EXPECT_LT(jump_by_growth(true), 0.01);
+  EXPECT_GT(plant_.particles.size(), before + 50);
+}
+
+// Here what is born has to be swung along: a leaf has 4 % of its later mass at once, a tenth of the segment's
+// that bears it.
+TEST_F(BentStraightClimber, GrowsWhileItSwingsWithHardlyAJump) {
+  const size_t before = plant_.particles.size();
+  EXPECT_LT(jump_by_growth(false), 0.025);
+  EXPECT_GT(plant_.particles.size(), before + 50);
 }
 
 // As above, in the steps after a cut, which takes weight from all that bore it.
