@@ -85,7 +85,10 @@ TEST(Clearances, AShakenTreeAmongMovingSolidsMovesAsIfAllOfItWereLookedAt) {
     const CollisionScene scene{solids, i < 250 ? 0.0 : 0.1};
     const Vec3 push(random.uniform(-1, 1), 0, random.uniform(-1, 1));
     if (i == 300)
-      for (int k : {0, 1}) stepper[k].follow(remove_subtree(plant[k], plant[k].branches[3].particles[2]));
+      for (int k : {0, 1}) {
+        const std::vector<ParticleId>& trunk = plant[k].branches[0].particles;
+        stepper[k].follow(remove_subtree(plant[k], trunk[trunk.size() * 2 / 3]));
+      }
     ContactStepReport report[2];
     for (int k : {0, 1}) {
       const std::vector<Wrench> wind(plant[k].particles.size(), {.force = 2e-2 * push});

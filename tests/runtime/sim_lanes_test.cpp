@@ -87,7 +87,8 @@ TEST(Lanes, AStepTakenAgainWithMoreSpringsIsThatStep) {
       for (int pass = 0; pass < 2; ++pass) {
         known = springs.size();
         const size_t at = (977 * static_cast<size_t>(i + 5 * pass) + 13) % storm.plant.particles.size();
-        springs.push_back({ParticleId(at), {}, start[at].position, 300 * Mat3::Identity(), Mat3::Identity()});
+        springs.push_back(
+            {ParticleId(at), Vec3::Zero(), start[at].position, 300 * Mat3::Identity(), Mat3::Identity()});
         storm.plant.motion = start;
         gaps.push_back(stepper.again(storm.plant, storm.wind, springs, known, options).gap);
         hashes.push_back(state_hash(storm.plant));
