@@ -33,7 +33,7 @@ std::vector<std::unique_ptr<SdfObstacle>> obstacles_of(const Scene& scene, std::
   for (const SceneObstacle& obstacle : scene.obstacles) {
     try {
       const Pieces pieces = pieces_of(obstacle.mesh);
-      const double thickness = obstacle.thickness.value_or(ShellOptions().thickness);
+      const double thickness = obstacle.thickness.value_or(kSheetThickness);
       if (pieces.sheet_count > 0 && !obstacle.thickness)
         notes.push_back(fmt::format(
             "obstacle '{}': {} of its {} pieces have no inside and count as sheets {} mm thick "

@@ -7,8 +7,8 @@
 namespace liana {
 namespace {
 
-/// One free stem particle, 6 cm long and 4 mm thick, of 2 g, after a root that the world holds far above and that
-/// holds nothing itself.
+/// One free stem particle, 6 cm long and 4 mm thick, of 2 g, after a root that the world holds far above and
+/// that holds nothing itself.
 Plant loose_stick(const Vec3& position, const Quat& orientation) {
   Plant plant;
   plant.branches.resize(1);
@@ -248,6 +248,47 @@ TEST(Contacts, WhatPassesByABarIsNotTouched) {
   plant.motion[1].velocity = {0, 0, -5};
   run(plant, {solids, {}}, 4, Vec3::Zero());
   EXPECT_NEAR(plant.motion[1].position.z(), -0.3, 1e-9);
+}
+
+TEST(Contacts, ABladeThatABarPiercesComesOffItOnOneSide) {
+  // The bar goes through its middle, off the axis; the nearest faces of the bar change as the blade turns.
+  const SdfObstacle bar(box_mesh({-0.01, -0.005, -0.005}, {1, 0.005, 0.005}));
+  const SdfObstacle* solids[] = {&bar};
+  Plant plant = loose_stick({0, 0.004, 0.001}, Quat(Eigen::AngleAxisd(0.2, Vec3(1, 1, 0).normalized())));
+  plant.branches[0].kind = DomainKind::Leaf;
+  plant.particles[1].half_width = 0.02;
+  plant.particles[1].half_thickness = 1e-4;
+  double fastest = 0;
+  ContactStepper stepper;
+  for (int i = 0; i < 60; ++i) {
+    std::vector<WorldSpring> springs;
+    stepper.step(plant, {solids, {}}, {}, springs, {.gravity = Vec3::Zero()});
+    fastest = std::max(fastest, plant.motion[1].velocity.norm());
+  }
+  EXPECT_LT(stepper.contacts().measure(plant, {solids, {}}).max_penetration, 5e-4);
+  EXPECT_LT(fastest, 0.31) << "m/s: no faster than it is pushed out";
+}
+
+TEST(Contacts, WhatIsWedgedInIsPushedNoHarderThanItsJointBears) {
+  // A soft shoot whose tip is 4 mm in a wall: joint of 100 N/m, so that 5 kN/m would open it by 3.9 mm of 60.
+  const SdfObstacle wall(box_mesh({-1, -1, -0.2}, {1, 1, 0}));
+  const SdfObstacle* solids[] = {&wall};
+  Plant plant = loose_stick({0, 0, 0}, Quat::Identity());
+  plant.motion[0].position = {0, -0.06, -0.002};
+  plant.particles[0].joint.on_parent = {0, -0.06, -0.002};
+  for (Particle& particle : plant.particles) particle.joint.bend_stiffness = Vec3::Constant(1);
+  plant.motion[1].position = {0, 0, -0.002};
+  Joint& joint = plant.particles[1].joint;
+  joint.on_parent = {0, 0.03, 0};
+  joint.on_self = {0, -0.03, 0};
+  joint.shear_stiffness = Vec3::Constant(100);
+  ContactStepper stepper;
+  for (int i = 0; i < 100; ++i) {
+    std::vector<WorldSpring> springs;
+    const ContactStepReport report =
+        stepper.step(plant, {solids, {}}, {}, springs, {.gravity = Vec3::Zero()});
+    ASSERT_EQ(report.step.redone, 0) << i;
+  }
 }
 
 }  // namespace

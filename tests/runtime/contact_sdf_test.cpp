@@ -209,15 +209,15 @@ TEST(Shells, ClosedPiecesAreSolidAndOpenOnesSheets) {
   Mesh open = box_mesh({3, 0, 0}, {4, 1, 1});
   open.triangles.pop_back();
   add(open);
-  const Shells shells = obstacles_from(mesh, {.thickness = 0.01});
-  EXPECT_EQ(shells.solids, 2u);
-  EXPECT_EQ(shells.sheets, 1u);
-  ASSERT_EQ(shells.obstacles.size(), 3u);
+  const Pieces pieces = pieces_of(mesh);
+  ASSERT_EQ(pieces.solids.size(), 2u);
+  EXPECT_EQ(pieces.sheet_count, 1u);
   double nearest = 1;
-  for (const auto& o : shells.obstacles)
-    nearest = std::min(nearest, o->closest_point({0.75, 0.75, 0.75}).distance);
+  for (const Mesh& solid : pieces.solids)
+    nearest = std::min(nearest, SdfObstacle(solid).closest_point({0.75, 0.75, 0.75}).distance);
   EXPECT_NEAR(nearest, -0.25, 1e-9);
-  EXPECT_GT(shells.obstacles[2]->distance({3.5, 0.5, 0.5}), 0) << "an open box is hollow";
+  const SdfObstacle hollow(pieces.sheets, {.sheet = 0.01});
+  EXPECT_GT(hollow.distance({3.5, 0.5, 0.5}), 0) << "an open box is hollow";
 }
 
 TEST(SdfObstacle, FindsItsResolutionFromItsThinnestParts) {

@@ -151,7 +151,8 @@ TEST(Climber, GrowsOnWhereItWasNotCut) {
   const double height = highest(plant);
   scene.run(14);
   EXPECT_TRUE(scene.sound);
-  EXPECT_EQ(plant.branches[0].particles.size(), stump_particles) << "a shoot without its tip is no longer one";
+  EXPECT_EQ(plant.branches[0].particles.size(), stump_particles)
+      << "a shoot without its tip is no longer one";
   EXPECT_NEAR(plant.branches[0].length, stump, 1e-9);
   EXPECT_GT(plant.particles.size(), before + 50) << "the others go on";
   EXPECT_GT(highest(plant), height + 0.3);
@@ -247,6 +248,58 @@ TEST_F(AnchorsOnAWall, LetGoBeyondTheirDistance) {
   EXPECT_EQ(anchors.released(), 1u);
   EXPECT_TRUE(plant.anchors.empty());
   EXPECT_FALSE(anchors.holds(id));
+}
+
+TEST_F(AnchorsOnAWall, ATautOneDoesNotMakeTheStemSpin) {
+  Particle& particle = plant.particles[0];
+  set_mass(particle, DomainKind::Branch, 800);
+  particle.joint.shear_stiffness = Vec3::Constant(200);
+  particle.joint.bend_stiffness = Vec3::Constant(2e-4);
+  anchors.attach(plant, id, around);
+  particle.joint.on_parent += Vec3(0.004, 0, 0.004);  // it is pulled sideways and off the wall
+  plant.motion[0].position += Vec3(0.004, 0, 0.004);
+  PlantStepper stepper;
+  double fastest = 0;
+  for (int i = 0; i < 200; ++i) {
+    anchors.update(plant, 0.025);
+    stepper.step(plant, {}, {}, {.gravity = Vec3::Zero()});
+    const Vec3 spin = plant.motion[0].orientation.conjugate() * plant.motion[0].angular_velocity;
+    if (i > 100) fastest = std::max(fastest, std::abs(spin.y()));
+  }
+  ASSERT_EQ(anchors.count(), 1u);
+  EXPECT_LT(fastest, 1e-3) << "rad/s";
+}
+
+TEST(TipGrowth, SlidesAlongWhatItMeetsSquarely) {
+  // Upwards along a wall, into the corner below a ledge.
+  const SdfObstacle wall(box_mesh({-1, -1, -0.2}, {1, 2, 0})),
+      ledge(box_mesh({-1, 0.1, -0.1}, {1, 0.2, 0.08}));
+  const SdfObstacle* solids[] = {&wall, &ledge};
+  const Surroundings around{solids, Vec3(0.2, 0.9, 0.4).normalized(), -10};
+  ClimberParameters parameters;
+  parameters.segment_length = 0.3;
+  Plant plant;
+  plant.branches.resize(1);
+  const double radius = parameters.tip_radius;
+  const ParticleId tip = append_segment(plant, BranchId(0), {ParticleId(), Vec3(0, 0.06, radius)},
+                                        {0.005, radius, radius}, Quat::Identity());
+  Shoot shoot{BranchId(0), radius, 0, 1};
+  Random random(1, "tip");
+  double deepest = 0;
+  for (int i = 0; i < 200 && !grow_tip(plant, shoot, parameters, around, random, 0.025); ++i)
+    for (const SdfObstacle* solid : solids)
+      deepest = std::max(deepest, radius - solid->closest_point(head_of(plant, tip)).distance);
+  EXPECT_LT(deepest, 2e-3) << "m, which contacts undo";
+  EXPECT_GT(2 * plant.particles[tip.index()].half_length, 0.15) << "m: it does not stop for good";
+}
+
+TEST(TipGrowth, IsFreeAsFarAsTheGround) {
+  const Surroundings around{{}, Vec3::UnitY(), 0};
+  const auto ground = in_the_way(around, {0, 0.02, 0}, {0, -1, 0}, 1e-3, 0.05);
+  ASSERT_TRUE(ground);
+  EXPECT_NEAR(ground->free, 0.019, 1e-12);
+  EXPECT_FALSE(in_the_way(around, {0, 0.02, 0}, {0, -1, 0}, 1e-3, 0.01)) << "too short to reach it";
+  EXPECT_FALSE(in_the_way(around, {0, 5e-4, 0}, {1, 0, 0}, 1e-3, 0.05)) << "along it";
 }
 
 }  // namespace

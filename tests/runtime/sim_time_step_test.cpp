@@ -122,8 +122,8 @@ TEST(TimeStep, EnergyOfAReleasedBranchOnlyDecays) {
       peak = std::max(peak, energy(plant));
       if (t >= 19) last_second = std::max(last_second, energy(plant));
     }
-    // The step has an energy of its own, which within a swing differs from this one by a share (ωh)²/4 of a mode's: a
-    // quarter for the second mode at 25 ms, but that mode holds little of the energy.
+    // The step has an energy of its own, which within a swing differs from this one by a share (ωh)²/4 of a
+    // mode's: a quarter for the second mode at 25 ms, but that mode holds little of the energy.
     EXPECT_LE(peak, 1.05 * start);
     EXPECT_LT(last_second, 0.3 * start);
   }

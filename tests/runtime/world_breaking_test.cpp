@@ -98,7 +98,8 @@ TEST_F(BreakingWorld, GrabbedBranchBreaksAndStaysInTheHand) {
   scene_.grabs = {grab};
   World world(scene_, 1);
   const Branch& branch = world.plant(0).branches[1];
-  const Vec3 from = world.plant(0).motion[branch.particles[branch.particles.size() * 7 / 10].index()].position;
+  const Vec3 from =
+      world.plant(0).motion[branch.particles[branch.particles.size() * 7 / 10].index()].position;
   run(world, 2.05);
   ASSERT_GT(world.report().broken, 0u);
   double nearest = 10;
@@ -119,7 +120,9 @@ TEST_F(BreakingWorld, EditorsGrabFollowsThePartThatBreaksOff) {
   World world(scene_, 1);
   const ParticleId held = world.plant(0).branches[1].particles.back();
   const Vec3 hand = world.plant(0).motion[held.index()].position;
-  WorldSpring spring{.particle = held, .target = hand, .stiffness = 500 * Mat3::Identity(),
+  WorldSpring spring{.particle = held,
+                     .target = hand,
+                     .stiffness = 500 * Mat3::Identity(),
                      .damping = 25 * Mat3::Identity()};
   world.set_grab(0, spring);
   run(world, 0.1);
@@ -159,7 +162,8 @@ TEST_F(BreakingWorld, SceneFileIsReadStrictly) {
     std::ofstream(folder_ / "scene.toml") << "[[plant]]\nbake = \"tree.bake\"\nbreaking = 0.5\n" << text;
     return read_scene(folder_ / "scene.toml");
   };
-  const Scene scene = read("[[cut]]\ndomain = \"" + names_[1] + "\"\nalong = 0.5\ntime = 2\n"
+  const Scene scene = read("[[cut]]\ndomain = \"" + names_[1] +
+                           "\"\nalong = 0.5\ntime = 2\n"
                            "[[grab]]\nat = [0, 1, 0]\ntime = 1\nseconds = 2\npath = [{ by = [1, 0, 0] }]\n"
                            "[fallen]\nremove_after = 5\n");
   EXPECT_EQ(scene.plants[0].breaking, 0.5);
@@ -173,6 +177,31 @@ TEST_F(BreakingWorld, SceneFileIsReadStrictly) {
   EXPECT_THROW(read("[[grab]]\nat = [0, 1, 0]\nseconds = 1\npath = []\n"), Error);
   EXPECT_THROW(read("[[grab]]\nat = [0, 1, 0]\nseconds = 1\npath = [{ bye = [1, 0, 0] }]\n"), Error);
   EXPECT_THROW(World(read("[[cut]]\ndomain = \"no such branch\"\n"), 1), Error);
+}
+
+TEST_F(BreakingWorld, ObstaclesAreReadFromObjAndPly) {
+  const Mesh box = box_mesh({0, 0, 0}, {1, 2, 3});
+  std::ofstream obj(folder_ / "box.obj"), ply(folder_ / "box.ply");
+  ply << "ply\nformat ascii 1.0\nelement vertex " << box.positions.size()
+      << "\nproperty float x\nproperty float y\nproperty float z\nelement face " << box.triangles.size()
+      << "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const Vec3& p : box.positions) {
+    obj << "v " << p.transpose() << "\n";
+    ply << p.transpose() << "\n";
+  }
+  for (const Triangle& t : box.triangles) {
+    obj << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+    ply << "3 " << t[0] << " " << t[1] << " " << t[2] << "\n";
+  }
+  obj.close(), ply.close();
+  std::ofstream(folder_ / "scene.toml")
+      << "[[obstacle]]\nmesh = \"box.obj\"\nscale = [0.5, 0.5, 0.5]\n"
+      << "[[obstacle]]\nmesh = \"box.ply\"\n[[plant]]\nbake = \"tree.bake\"\n";
+  const Scene scene = read_scene(folder_ / "scene.toml");
+  ASSERT_EQ(scene.obstacles.size(), 2u);
+  EXPECT_EQ(scene.obstacles[0].mesh.triangles.size(), 12u);
+  EXPECT_NEAR(SdfObstacle(scene.obstacles[0].mesh).high().z(), 1.5, 1e-12);
+  EXPECT_NEAR(SdfObstacle(scene.obstacles[1].mesh).high().z(), 3, 1e-12);
 }
 
 }  // namespace

@@ -9,6 +9,8 @@
 namespace liana {
 namespace {
 
+constexpr size_t kMostSolids = 64;
+
 struct Piece {
   Mesh mesh;
   double volume = 0;  // m³
@@ -62,7 +64,7 @@ void judge(Piece& piece) {
 
 }  // namespace
 
-Pieces pieces_of(const Mesh& mesh, size_t most_solids) {
+Pieces pieces_of(const Mesh& mesh) {
   std::vector<Piece> pieces = connected_pieces(ClosedMesh(mesh, true).mesh());
   std::vector<double> volumes;
   for (Piece& piece : pieces) {
@@ -70,12 +72,12 @@ Pieces pieces_of(const Mesh& mesh, size_t most_solids) {
     if (piece.solid) volumes.push_back(piece.volume);
   }
   std::sort(volumes.rbegin(), volumes.rend());
-  const double least = volumes.size() > most_solids ? volumes[most_solids - 1] : 0;
+  const double least = volumes.size() > kMostSolids ? volumes[kMostSolids - 1] : 0;
 
   Pieces result;
   Mesh& rest = result.sheets;
   for (Piece& piece : pieces) {
-    if (piece.solid && piece.volume >= least && result.solids.size() < most_solids) {
+    if (piece.solid && piece.volume >= least && result.solids.size() < kMostSolids) {
       result.solids.push_back(std::move(piece.mesh));
       continue;
     }
@@ -86,17 +88,6 @@ Pieces pieces_of(const Mesh& mesh, size_t most_solids) {
     ++result.sheet_count;
   }
   return result;
-}
-
-Shells obstacles_from(const Mesh& mesh, const ShellOptions& options) {
-  const Pieces pieces = pieces_of(mesh, options.most_solids);
-  Shells shells{.obstacles = {}, .solids = pieces.solids.size(), .sheets = pieces.sheet_count};
-  for (const Mesh& solid : pieces.solids) shells.obstacles.push_back(std::make_unique<SdfObstacle>(solid));
-  if (shells.sheets > 0)
-    shells.obstacles.push_back(
-        std::make_unique<SdfObstacle>(pieces.sheets, SdfOptions{.sheet = options.thickness}));
-  for (const auto& obstacle : shells.obstacles) obstacle->feel = options.feel;
-  return shells;
 }
 
 }  // namespace liana
