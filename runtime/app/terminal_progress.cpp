@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -12,10 +13,12 @@
 namespace liana {
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
+// Written by a signal handler in whichever thread it comes, read by all.
+std::atomic<bool> interrupted = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
 
 void remember_interrupt(int) {
-  interrupted = 1;
+  interrupted = true;
   std::signal(SIGINT, SIG_DFL);
 }
 
@@ -39,7 +42,7 @@ std::string progress_bar(std::string_view stage, size_t done, size_t total, doub
 
 TerminalProgress::TerminalProgress(Style style)
     : bar_(style == Style::Bar || (style == Style::Auto && terminal_can_redraw())) {
-  interrupted = 0;
+  interrupted = false;
   std::signal(SIGINT, remember_interrupt);
 }
 
@@ -68,7 +71,7 @@ void TerminalProgress::advance(size_t count) {
 }
 
 bool TerminalProgress::cancelled() const {
-  return interrupted != 0;
+  return interrupted;
 }
 
 void TerminalProgress::end_stage() {
