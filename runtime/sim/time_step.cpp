@@ -36,6 +36,9 @@ static_assert(offsetof(Motion, angular_velocity) == 11 * sizeof(double));
 static_assert(offsetof(Motion, acceleration) == 14 * sizeof(double));
 static_assert(offsetof(Motion, angular_acceleration) == 17 * sizeof(double));
 
+// Gaps that open no faster than that in a step, up to that much, are a soft stem's answer to a steady pull.
+constexpr double kSlowly = 4e-3, kMostStretch = 0.2;
+
 // Packs whose joints are looked at before they are eliminated: their records fit the first-level cache.
 constexpr size_t kPacksAtOnce = 8;
 
@@ -199,6 +202,8 @@ StepReport PlantStepper::step_from(Plant& plant, std::span<const Wrench> externa
   StepReport report;
   // A support that jumped is carried to its new place within the step, when the step has to be redone.
   const Vec3 teleported = off_support(plant);
+  start_gap_ = gap_;
+  const double gap_limit = std::max(options.gap_limit, std::min(start_gap_ + kSlowly, kMostStretch));
   report.calibrated = options.dt == plant.scheme.dt;
 
   for (int finer = 1;; finer *= 2) {
@@ -209,7 +214,7 @@ StepReport PlantStepper::step_from(Plant& plant, std::span<const Wrench> externa
                  options.gravity,    options.threads};
     report.gap = 0;
     report.finite = true;
-    for (int i = 0; i < parts && report.finite && (last || report.gap <= options.gap_limit); ++i) {
+    for (int i = 0; i < parts && report.finite && (last || report.gap <= gap_limit); ++i) {
       if (i > 0) now_.swap(next_);
       const std::vector<Motion>& from = i == 0 ? plant.motion : now_;
       if (finer > 1) part.world = (1 - (i + 1.0) / parts) * teleported;
@@ -222,7 +227,7 @@ StepReport PlantStepper::step_from(Plant& plant, std::span<const Wrench> externa
       report.finite = outcome == Outcome::Finite;
       ++report.solves;
     }
-    report.gap_held = report.gap <= options.gap_limit;
+    report.gap_held = report.gap <= gap_limit;
     if ((report.finite && report.gap_held) || last) break;
     ++report.redone;
   }
@@ -232,6 +237,7 @@ StepReport PlantStepper::step_from(Plant& plant, std::span<const Wrench> externa
     plant.motion.swap(next_);
     if (!report.gap_held && options.most_redo_substeps > 1)
       report.reseated = reseat(plant, next_, options.gap_limit);
+    gap_ = report.reseated > 0 ? options.gap_limit : report.gap;
     if (plant.anchors.empty() && transient.empty() && external.empty()) keep_angular_momentum(next_, plant);
   } else {
     next_ = plant.motion;

@@ -1,8 +1,8 @@
 // One step of one plant: generalized-α, one linearised solve over the tree, and a net under it.
 //
 // Symbols: h substep (s); ρ∞ spectral radius at infinite frequency; gap distance between the two anchor
-// points of a joint, over the length of the particle with its petiole. A step whose gap exceeds the limit is thrown away and
-// redone from the same start with 2, 4, … 32 times as many substeps at ρ∞ = 0.
+// points of a joint, over the length of the particle with its petiole. A step whose gap exceeds the limit is
+// thrown away and redone from the same start with 2, 4, … 32 times as many substeps at ρ∞ = 0.
 #pragma once
 
 #include <span>
@@ -23,7 +23,7 @@ struct Wrench {
 struct StepOptions {
   double dt = 0.025;             ///< s; frequencies are as baked only when it equals plant.scheme.dt
   Vec3 gravity = {0, -9.81, 0};  ///< m/s²
-  double gap_limit = 0.02;       ///< of gap_scale(); above it the step is redone
+  double gap_limit = 0.02;       ///< of gap_scale(); above it the step is redone, unless it opens slowly
   int most_redo_substeps = 32;   ///< per substep of the scheme; 1 switches the net off
   unsigned threads = 1;          ///< that share one plant, if it has some 400 particles or more
 };
@@ -60,7 +60,10 @@ class PlantStepper {
 
   /// The motion that the last step started from, and back to it.
   const std::vector<Motion>& start() const { return next_; }
-  void take_back(Plant& plant) noexcept { plant.motion.swap(next_); }
+  void take_back(Plant& plant) noexcept {
+    plant.motion.swap(next_);
+    gap_ = start_gap_;
+  }
 
   /// What the substep runs on; the fastest that this processor has. For tests and benchmarks.
   void use(const lanes::Kernels& kernels) { kernels_ = &kernels; }
@@ -83,8 +86,9 @@ class PlantStepper {
   std::vector<uint32_t> first_spring_;       // of each part and the top
   ShapeMatchingStepper shape_matching_;      // for plants of that scheme
   std::vector<uint8_t> stale_;               // per part, when not all need be eliminated
-  uint64_t kept_ = 0;                        // the step whose elimination a thread's memory still holds
-  std::vector<Motion> now_, next_;           // the plant's own state stays untouched until a step is accepted
+  double gap_ = 0, start_gap_ = 0;  // largest of the plant's present state, and where the last step began
+  uint64_t kept_ = 0;               // the step whose elimination a thread's memory still holds
+  std::vector<Motion> now_, next_;  // the plant's own state stays untouched until a step is accepted
 };
 
 }  // namespace liana

@@ -68,10 +68,9 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, const Gap
   const double approach = velocity.dot(n);
   const double hold_stiffness = options_.stiffness_ratio * mass / (dt * dt);  // N/m, across
   const bool blade = plant.branches[plant.particles[found.particle].branch.index()].kind == DomainKind::Leaf;
+  const double stiff = std::max(hold_stiffness, options_.least_stiffness);
   const double gentle = bearable_force(plant.particles[found.particle]) / std::max(1e-9, -found.gap);
-  const double k = blade ? hold_stiffness
-                         : std::max(hold_stiffness / 4,
-                                    std::min(std::max(hold_stiffness, options_.least_stiffness), gentle));
+  const double k = blade ? hold_stiffness : std::clamp(gentle, hold_stiffness / 4, stiff);
   const double coming = std::max(0.0, -approach) * dt / kImpact;
   const double settling = dt * std::clamp(1.25 - coming / 4, 0.25, 1.0);  // τ
   const Mat3 normal = n * n.transpose(), across = Mat3::Identity() - normal;

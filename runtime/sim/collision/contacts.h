@@ -60,9 +60,9 @@ class Contacts {
   WorldSpring spring(const Plant& plant, const Motion& motion, const Gap& found, double to_surface,
                      Grip& grip) const;
 
-  ContactOptions options_;
   Clearances* clearances() { return options_.remember_clearances ? &clearances_ : nullptr; }
 
+  ContactOptions options_;
   Probes probes_;
   Clearances clearances_;
   std::vector<uint8_t> exempt_;      // per particle
