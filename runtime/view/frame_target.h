@@ -8,6 +8,11 @@
 
 namespace liana {
 
+/// What several samples a pixel are drawn to.
+struct Multisampled {
+  GlObject frame{GlKind::Framebuffer}, color{GlKind::Renderbuffer}, depth{GlKind::Renderbuffer};
+};
+
 class FrameTarget {
  public:
   /// samples: 1, or 4 for smooth edges. Sides of 1 to 16384 pixels. Throws Error{Usage} outside.
@@ -27,9 +32,6 @@ class FrameTarget {
  private:
   int width_, height_, samples_;
   GlObject frame_{GlKind::Framebuffer}, color_{GlKind::Texture}, depth_{GlKind::Texture};
-  struct Multisampled {
-    GlObject frame{GlKind::Framebuffer}, color{GlKind::Renderbuffer}, depth{GlKind::Renderbuffer};
-  };
   std::optional<Multisampled> fine_;
 };
 
