@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "mesher/base/mesh_checks.h"
 #include "mesher/base/progress.h"
@@ -25,6 +26,28 @@ TEST(SolidUnion, OfCrossingBarsHasTheVolumeOfBothLessWhatTheyShare) {
   EXPECT_NEAR(signed_volume(mesh), 0.072, 1e-12);
   EXPECT_TRUE(find_adjacency(mesh).closed);
   EXPECT_TRUE(find_adjacency(mesh).oriented);
+}
+
+// CGAL leaves choices between equals to the addresses of what it allocates.
+TEST(SolidUnion, IsTheSameWhateverElseIsOnTheHeap) {
+  const auto fence = [] {
+    SolidUnion all(make_box(Vec3(-0.01, 0.2, 0), Vec3(0.8, 0.05, 0.02)));
+    for (int i = 0; i < 8; ++i) {
+      const double x = 0.1 * i;
+      EXPECT_TRUE(all.add(make_box(Vec3(x, 0, 0), Vec3(0.02, 1, 0.02))));
+      EXPECT_TRUE(all.add(make_box(Vec3(x, 0.45, -0.05), Vec3(0.12, 0.05, 0.2))));
+    }
+    return all.mesh(1e-5);
+  };
+  const Mesh first = fence();
+  std::vector<std::unique_ptr<char[]>> clutter;
+  for (size_t i = 0; i < 20000; ++i) {
+    clutter.push_back(std::make_unique<char[]>(16 + i * 7919 % 5000));
+    if (i % 3 == 0) clutter[i / 2].reset();
+  }
+  const Mesh second = fence();
+  ASSERT_EQ(first.triangles, second.triangles);
+  for (size_t i = 0; i < first.positions.size(); ++i) EXPECT_TRUE(first.positions[i] == second.positions[i]);
 }
 
 // The twig (0.5 m) leaves a branch of 0.05 m radius at a slant, from 0.014 m beside its axis: between 0.03
