@@ -87,4 +87,12 @@ inline double gap_scale(const Particle& particle) {
   return std::max(half + std::max(half, particle.joint.on_self.norm()), lanes::kLeastGapScale);
 }
 
+/// N: what opens a particle's joint by a part of what a time step bears, and so what a contact may push with.
+/// Where a growing stem is wedged in, it stays a little inside rather than being torn off.
+inline double bearable_force(const Particle& particle) {
+  constexpr double kBearableGap = 5e-3;  // of gap_scale()
+  const double stiffness = particle.joint.shear_stiffness.minCoeff();
+  return stiffness > 0 ? kBearableGap * gap_scale(particle) * stiffness : HUGE_VAL;
+}
+
 }  // namespace liana

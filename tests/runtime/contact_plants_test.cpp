@@ -34,6 +34,16 @@ Plant free_stick(const Vec3& position, const Quat& orientation, double mass, con
   return plant;
 }
 
+/// One free blade: 6 x 4 cm, 0.4 mm thick.
+Plant free_blade(const Vec3& position, const Quat& orientation, double mass, const Vec3& velocity) {
+  Plant plant = free_stick(position, orientation, mass, velocity);
+  plant.branches[0].kind = DomainKind::Leaf;
+  Particle& particle = plant.particles[0];
+  particle.half_length = 0.03, particle.half_width = 0.02, particle.half_thickness = 2e-4;
+  particle.inertia = rod_inertia(mass, 0.03, 0.02, 2e-4);
+  return plant;
+}
+
 /// Plants that touch each other, stepped one after the other.
 struct Together {
   std::vector<Plant> plants;
@@ -58,6 +68,17 @@ struct Together {
     options.gravity = gravity;
     for (size_t i = 0; i < plants.size(); ++i)
       EXPECT_TRUE(steppers[i].step(plants[i], wrenches[i], springs[i], options).finite);
+  }
+  double energy() const {
+    double sum = 0;
+    for (const Plant& plant : plants)
+      for (size_t i = 0; i < plant.particles.size(); ++i) {
+        const Motion& m = plant.motion[i];
+        const Vec3 spin = m.orientation.conjugate() * m.angular_velocity;
+        sum += plant.particles[i].mass * m.velocity.squaredNorm() / 2 +
+               spin.dot(plant.particles[i].inertia.cwiseProduct(spin)) / 2;
+      }
+    return sum;
   }
   Vec3 momentum() const {
     Vec3 sum = Vec3::Zero();
@@ -202,6 +223,91 @@ TEST(PlantContacts, AFreeTreeMovesAsWithoutThem) {
   }
   EXPECT_EQ(with.touched, 0u);
   EXPECT_EQ(state_hash(with.plants[0], 0), state_hash(without, 0));
+}
+
+const Quat kFlat(Eigen::AngleAxisd(-kPi / 2, Vec3::UnitX()));  // a blade's upper side is up
+
+/// A leaf of 6 x 4 cm on the tip of a petiole of its own, held at `base`, reaching along +X, face up.
+Plant held_leaf(const Vec3& base, double yaw) {
+  Plant plant = test::rod_plant({.length = 0.06,
+
+                                 .radius = 0.02,
+                                 .youngs_modulus = 1.4e7,
+                                 .density = 400,
+                                 .flatness = 100},
+                                1);
+  plant.branches[0].kind = DomainKind::Leaf;
+  plant.particles[0].mass_damping = 2.5;
+  const Quat turn =
+      Quat(Eigen::AngleAxisd(yaw, Vec3::UnitY())) * kAlongX * Quat(Eigen::AngleAxisd(kPi / 2, Vec3::UnitY()));
+  Joint& joint = plant.particles[0].joint;
+  joint.on_parent = base;
+  joint.rest = turn;
+  plant.motion[0].orientation = turn;
+  plant.motion[0].position = base - turn * joint.on_self;
+  return plant;
+}
+
+TEST(PlantContacts, ALeafPressedOnAnotherBendsItAndComesToRest) {
+  for (const double yaw : {0.0, 0.5, kPi / 2, kPi}) {
+    Together two;
+    two.plants.push_back(held_leaf({0, 0.004, 0}, 0));
+    const Quat turn(Eigen::AngleAxisd(yaw, Vec3::UnitY()));
+    two.plants.push_back(held_leaf(Vec3(0.04, 0, 0) - turn * Vec3(0.03, 0, 0), yaw));
+    const double force = 0.3 * two.plants[0].particles[0].joint.bend_stiffness.x() / 0.03;  // 0.3 rad alone
+    for (int i = 0; i < 400; ++i) two.step({{{.force = {0, -force, 0}}}, {}});
+    const Motion &upper = two.plants[0].motion[0], &lower = two.plants[1].motion[0];
+    EXPECT_LT(lower.position.y(), -0.001) << yaw;
+    EXPECT_LT(lower.position.y(), upper.position.y()) << yaw;
+    EXPECT_LT(upper.velocity.norm(), 2e-3) << yaw << ": trembles by 50 um";
+  }
+}
+
+TEST(PlantContacts, TwoFreeBladesThatMeetLoseEnergyAndKeepTheirMomentum) {
+  for (const double aside : {0.0, 0.005})
+    for (const double heavier : {1.0, 10.0}) {
+      Together two;
+      const Quat tilted = Quat(Eigen::AngleAxisd(0.4, Vec3::UnitZ())) * kFlat;
+      two.plants.push_back(free_blade({aside, 0.02, 0}, kFlat, 3e-4, {0, -0.5, 0}));
+      two.plants.push_back(
+          free_blade({0, -0.02, 0}, aside > 0 ? tilted : kFlat, 3e-4 * heavier, {0, 0.5, 0}));
+      const Vec3 before = two.momentum();
+      const double energy = two.energy();
+      for (int i = 0; i < 40; ++i) two.step();
+      EXPECT_LT(two.energy(), energy) << aside << " " << heavier;
+      EXPECT_GT(two.touched, 0u);
+      if (aside == 0) EXPECT_LT((two.momentum() - before).norm(), 1e-9 * 3e-4) << heavier;
+      const Vec3 apart = two.plants[0].motion[0].velocity - two.plants[1].motion[0].velocity;
+      EXPECT_GT(apart.y(), -0.2) << "of 1 m/s";
+    }
+}
+
+TEST(PlantContacts, AFastBladeDoesNotPassABladeOrAStem) {
+  for (const bool stem : {false, true})
+    for (const double speed : {0.5, 1.0}) {  // m/s: 25 mm in a step
+      Together two;
+      two.plants.push_back(free_blade({0.004, 0.31, 0.003}, kFlat, 3e-4, {0, -speed, 0}));
+      two.plants.push_back(stem ? free_stick({0, 0, 0}, kAlongZ, 0.1, Vec3::Zero())
+                                : free_blade({0, 0, 0}, kFlat, 0.1, Vec3::Zero()));
+      for (Plant& plant : two.plants)
+        plant.particles[0].inertia *= 1e4;  // they do not swing round each other
+      for (int i = 0; i < 60; ++i) two.step();
+      EXPECT_GT(two.touched, 0u);
+      EXPECT_GT((two.plants[0].motion[0].position - two.plants[1].motion[0].position).y(), 0)
+          << speed << " " << stem;
+    }
+}
+
+TEST(PlantContacts, ABladeThatWasPiercedComesOffAtTheSideItCameFrom) {
+  // Pushed through a stem by its tip and let go.
+  Together two;
+  two.plants.push_back(free_stick({0, 0, 0}, kAlongZ, 0.1, Vec3::Zero()));
+  two.plants.push_back(free_blade({0, 0.04, 0}, Quat::Identity(), 3e-4, Vec3::Zero()));
+  two.step();
+  two.plants[1].motion[0].position.y() = 0.02;  // its tip is 10 mm below the stem's axis
+  for (int i = 0; i < 100; ++i) two.step();
+  EXPECT_GT(two.touched, 0u);
+  EXPECT_GT(two.plants[1].motion[0].position.y(), 0.033) << "its half length, and the stem's radius of 5 mm";
 }
 
 TEST(PlantContacts, NeighboursAreFoundWhateverTheirSizes) {

@@ -9,16 +9,8 @@
 namespace liana {
 namespace {
 
-constexpr double kImpact = 1e-3;       // m a step, beyond which an approach is an impact
-constexpr double kImpactSpeed = 0.1;   // m/s, beyond which elasticity shows
-constexpr double kBearableGap = 5e-3;  // of a joint's gap_scale(), that a contact may open it by
-
-/// N: what opens a particle's joint by a part of what a time step bears. Where a growing stem is wedged in,
-/// it stays a little inside rather than being torn off.
-double bearable_force(const Particle& particle) {
-  const double stiffness = particle.joint.shear_stiffness.minCoeff();
-  return stiffness > 0 ? kBearableGap * gap_scale(particle) * stiffness : HUGE_VAL;
-}
+constexpr double kImpact = 1e-3;      // m a step, beyond which an approach is an impact
+constexpr double kImpactSpeed = 0.1;  // m/s, beyond which elasticity shows
 
 }  // namespace
 
@@ -70,7 +62,8 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, const Gap
   const bool blade = plant.branches[plant.particles[found.particle].branch.index()].kind == DomainKind::Leaf;
   const double stiff = std::max(hold_stiffness, options_.least_stiffness);
   const double gentle = bearable_force(plant.particles[found.particle]) / std::max(1e-9, -found.gap);
-  const double k = blade ? hold_stiffness : std::clamp(gentle, hold_stiffness / 4, stiff);
+  const double k = blade ? std::clamp(gentle, hold_stiffness / 16, hold_stiffness)
+                         : std::clamp(gentle, hold_stiffness / 4, stiff);
   const double coming = std::max(0.0, -approach) * dt / kImpact;
   const double settling = dt * std::clamp(1.25 - coming / 4, 0.25, 1.0);  // τ
   const Mat3 normal = n * n.transpose(), across = Mat3::Identity() - normal;

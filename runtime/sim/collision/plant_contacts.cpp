@@ -1,10 +1,11 @@
 #include "runtime/sim/collision/plant_contacts.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "mesher/base/error.h"
+#include "runtime/sim/collision/meeting.h"
 #include "runtime/sim/generalized_alpha.h"
+#include "runtime/sim/joints.h"
 
 namespace liana {
 namespace {
@@ -13,27 +14,15 @@ constexpr double kApart = 5e-4;       // m, beyond which an exempt pair counts a
 constexpr double kImpactSpeed = 0.1;  // m/s, beyond which elasticity shows
 constexpr float kRounding = 1e-5f;    // m, that single precision may take from a box
 
-struct ClosestPoints {
-  double s, t;  // in [-1, 1] along each axis
-};
-
-/// Of the segments p + s u and q + t v, drawn a little to their middles: of nearly parallel ones the closest
-/// points would jump from end to end.
-ClosestPoints closest_points(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& v) {
-  const Vec3 w = p - q;
-  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
-  constexpr double kDrawn = 0.01;
-  const double area = (1 + kDrawn) * (1 + kDrawn) * uu * vv - uv * uv;
-  const double s = std::clamp((uv * vw - (1 + kDrawn) * vv * uw) / area, -1.0, 1.0);
-  const double t = std::clamp((vw + s * uv) / vv, -1.0, 1.0);
-  return {s, t};
+/// m/s, of the particle's ends as it turns.
+double turning_speed(const Particle& particle, const Motion& motion) {
+  return std::max(particle.half_length, particle.half_width) * motion.angular_velocity.norm();
 }
 
-/// Half the thickness of an elliptical cross-section along a unit direction of the world.
-double reach_along(const Particle& particle, const Quat& orientation, const Vec3& n) {
-  if (particle.half_width == particle.half_thickness) return particle.half_width;
-  const Vec3 local = orientation.conjugate() * n;
-  return std::hypot(particle.half_width * local.x(), particle.half_thickness * local.z());
+/// kg: what a free particle opposes to a push along n (unit) at a lever from its centre (m).
+double mass_at(const Particle& particle, const Motion& motion, const Vec3& arm, const Vec3& n) {
+  const Vec3 turning = motion.orientation.conjugate() * arm.cross(n);
+  return 1 / (1 / particle.mass + turning.cwiseAbs2().dot(particle.inertia.cwiseMax(1e-15).cwiseInverse()));
 }
 
 }  // namespace
@@ -46,17 +35,16 @@ void PlantContacts::look_at(std::span<const Plant* const> plants) {
     const double dt = plant.scheme.dt;
     for (uint32_t i = 0; i < plant.particles.size(); ++i) {
       const Particle& particle = plant.particles[i];
-      if (plant.branches[particle.branch.index()].kind == DomainKind::Leaf) continue;
+      const bool blade = plant.branches[particle.branch.index()].kind == DomainKind::Leaf;
       const Motion& m = plant.motion[i];
-      const Vec3 axis = m.orientation * Vec3(0, particle.half_length, 0);
-      const auto radius = static_cast<float>(std::max(particle.half_width, particle.half_thickness));
-      const double way = dt * (m.velocity.norm() + particle.half_length * m.angular_velocity.norm() +
-                               dt / 2 * m.acceleration.norm());
-      const Eigen::Vector3f x = m.position.cast<float>(), along = axis.cwiseAbs().cast<float>();
-      const float around = radius + static_cast<float>(way) + kRounding;
+      const double way =
+          dt * (m.velocity.norm() + turning_speed(particle, m) + dt / 2 * m.acceleration.norm());
+      const Eigen::Vector3f x = m.position.cast<float>();
+      const Eigen::Vector3f along = extent({particle, m, blade}).cast<float>();
+      const float around = static_cast<float>(way) + kRounding;
       const FlatBox::Corner centre{x.x(), x.y(), x.z(), 0},
           half{along.x() + around, along.y() + around, along.z() + around, 0};
-      bodies_.push_back({m.position, axis, radius, k, i});
+      bodies_.push_back({k, i, blade});
       boxes_.push_back({centre - half, centre + half});
     }
   }
@@ -104,6 +92,7 @@ bool PlantContacts::near_kin(uint32_t a, uint32_t b) const {
   const Body &x = bodies_[a], &y = bodies_[b];
   if (x.plant != y.plant) return false;
   const Kin &of_x = kin_[a], &of_y = kin_[b];
+  if (x.blade && of_x.branch == of_y.branch) return true;
   return of_x.parent == y.particle || of_y.parent == x.particle || of_x.grandparent == y.particle ||
          of_y.grandparent == x.particle ||
          (of_x.parent != kNone && (of_x.parent == of_y.parent || of_x.parent == of_y.grandparent)) ||
@@ -121,7 +110,7 @@ void PlantContacts::list_moved(std::span<const Plant* const> plants) {
       return parent.valid() ? static_cast<uint32_t>(parent.index()) : kNone;
     };
     const uint32_t parent = above(bodies_[i].particle);
-    kin_[i] = {parent, above(parent)};
+    kin_[i] = {parent, above(parent), plant.particles[bodies_[i].particle].branch};
     // The box holds one step's way already; the list is to last for several.
     const double speed = plant.motion[bodies_[i].particle].velocity.norm();
     const auto more = static_cast<float>(options_.margin + options_.list_steps * plant.scheme.dt * speed);
@@ -192,28 +181,23 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
                           std::span<std::vector<WorldSpring>* const> springs, PlantContactReport& report) {
   const uint32_t old = std::exchange(candidate.memory, kNone);
   const Body &a = bodies_[candidate.a], &b = bodies_[candidate.b];
-  const auto [s, t] = closest_points(a.centre, a.axis, b.centre, b.axis);
-  const Vec3 arm_a = s * a.axis, arm_b = t * b.axis;
-  const Vec3 between = a.centre + arm_a - b.centre - arm_b;
-  double distance = between.norm();
   const Plant &plant_a = *plants[a.plant], &plant_b = *plants[b.plant];
   const Motion &ma = plant_a.motion[a.particle], &mb = plant_b.motion[b.particle];
+  const Particle &pa = plant_a.particles[a.particle], &pb = plant_b.particles[b.particle];
   const double dt = plant_a.scheme.dt;
-  const Vec3 velocity_a = ma.velocity + ma.angular_velocity.cross(arm_a);
-  const Vec3 velocity_b = mb.velocity + mb.angular_velocity.cross(arm_b);
-  const Vec3 velocity = velocity_a - velocity_b, acceleration = ma.acceleration - mb.acceleration;
-  if (distance - a.radius - b.radius > dt * (velocity.norm() + dt / 2 * acceleration.norm()) + kApart) return;
+  const Vec3 acceleration = ma.acceleration - mb.acceleration;
 
   Memory memory{a.name(), b.name(), Vec3::Zero(), false, {}};
   if (old != kNone) memory = memory_[old];
-  Vec3 n = distance > 1e-9 ? Vec3(between / distance)
-           : old != kNone  ? memory.normal
-                           : a.axis.cross(b.axis).stableNormalized();
-  // The axes passed each other: what counts is the side that they came from.
-  if (old != kNone && !memory.exempt && n.dot(memory.normal) < 0) n = -n, distance = -distance;
-  const Particle &pa = plant_a.particles[a.particle], &pb = plant_b.particles[b.particle];
-  const double thickness = reach_along(pa, ma.orientation, n) + reach_along(pb, mb.orientation, n);
-  const double gap = distance - thickness;
+  const Vec3* side = old != kNone && !memory.exempt ? &memory.normal : nullptr;
+  const double far = kApart + dt * (mb.velocity - ma.velocity).norm() +
+                     dt * (turning_speed(pa, ma) + turning_speed(pb, mb) + dt / 2 * acceleration.norm());
+  const Meeting met = meet({pa, ma, a.blade}, {pb, mb, b.blade}, side, far);
+  if (met.gap > far) return;
+  const auto& [n, gap, soft, arm_a, arm_b] = met;
+  const Vec3 velocity_a = ma.velocity + ma.angular_velocity.cross(arm_a);
+  const Vec3 velocity_b = mb.velocity + mb.angular_velocity.cross(arm_b);
+  const Vec3 velocity = velocity_a - velocity_b;
 
   const auto is_new = [&](const Body& body) {
     return body.plant >= sizes_.size() || body.particle >= sizes_[body.plant];
@@ -229,21 +213,24 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
   const double approach = velocity.dot(n);
   const double coming = std::min(0.0, dt * approach + dt * dt / 2 * acceleration.dot(n));
   // What has bounced leaves by itself.
-  if (gap + coming >= 0 || (options_.feel.elasticity > 0 && approach > kImpactSpeed)) return;
+  if (gap + (side ? 3 : 1) * coming >= 0 || (options_.feel.elasticity > 0 && approach > kImpactSpeed)) return;
   ++report.contacts;
   report.max_overlap = std::max(report.max_overlap, -gap);
   memory.normal = n;
 
   // Reduced mass, and how much of the way each one goes: k / share has the same frequency for both.
-  const double sum = std::max(pa.mass + pb.mass, 1e-12);
-  const double share_a = std::clamp(pb.mass / sum, 1e-3, 1 - 1e-3);
+  const double of_a = mass_at(pa, ma, arm_a, n), of_b = mass_at(pb, mb, arm_b, n);
+  const double sum = std::max(of_a + of_b, 1e-12);
+  const double share_a = std::clamp(of_b / sum, 1e-3, 1 - 1e-3);
   const double reduced = sum * share_a * (1 - share_a);
   // Springs to the world resist the acceleration of what moves together like a mass of kΔt²: soft where a
-  // touch is light, hard where it would be deep. The force k₀δ (1 + d²), d the depth by thickness, with its
+  // touch is light, hard where it would be deep. The force k₀δ (1 + d²), d the depth by `soft`, with its
   // own slope.
-  const double depth = std::min(-(gap + coming) / (0.15 * (thickness + 1e-6)), options_.deepest);
+  const double depth = std::min(-(gap + coming) / soft, options_.deepest);
   const double light = options_.stiffness_ratio * reduced / (dt * dt);
-  const double k = light * (1 + 3 * depth * depth), secant = light * (1 + depth * depth);
+  const double bearable = std::min(bearable_force(pa), bearable_force(pb)) / std::max(1e-9, -gap);
+  const double k = std::clamp(bearable, light / 4, light * (1 + 3 * depth * depth));
+  const double secant = std::min(k, light * (1 + depth * depth));
   const GeneralizedAlpha method(plant_a.scheme.rho_infinity);
   const double at_end = 1 - method.alpha_f;
 
@@ -270,7 +257,7 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
     spring.particle = ParticleId(body.particle);
     spring.on_particle = point;
     const double stiffness = k / share;
-    spring.target = body.centre + arm +
+    spring.target = plants[body.plant]->motion[body.particle].position + arm +
                     at_end * (share * sign * (push_out * n + friction.stretch) + dt * common.dot(n) * n);
     spring.stiffness = stiffness * along;
     spring.damping = stiffness * settling * along;

@@ -1,11 +1,9 @@
 // Contacts between plants, and of a plant with itself, as pairs of springs for the next time step.
 //
-// Stems only: blades are as thin as paper, overlap as they grow, and touch obstacles alone.
-// A particle is a capsule about its axis, with the elliptical cross-section's own reach towards the other as
-// radius. Both particles of a pair are drawn to where the two would meet if only they moved: the lighter one
-// goes most of the way. At rest and for free particles the two pushes are equal and opposite; plants are
-// solved one by one, so in between a branch that is held moves less than foreseen and the pair closes over a
-// few steps.
+// Stems are capsules, blades are ellipsoids (meeting.h). Both particles of a pair are drawn to where the two
+// would meet if only they moved: the lighter one goes most of the way. At rest and for free particles the two
+// pushes are equal and opposite; plants are solved one by one, so in between a branch that is held moves less
+// than foreseen and the pair closes over a few steps.
 #pragma once
 
 #include <span>
@@ -21,7 +19,7 @@ namespace liana {
 struct PlantContactOptions {
   ContactFeel feel;
   double stiffness_ratio = 10;  ///< normal stiffness of a light touch over reduced mass/Δt²
-  double deepest = 5;           ///< times 0.15 of the thickness: what is deeper, or an impact, is no stiffer
+  double deepest = 5;           ///< times Meeting::soft: what is deeper, or an impact, is no stiffer
   double push_out_speed = 0.5;  ///< m/s, at which what is deep inside is moved out
   double margin = 6e-3;         ///< m that lists of neighbours allow for turns
   double list_steps = 2;        ///< steps at the present speed that they last for
@@ -50,14 +48,14 @@ class PlantContacts {
   void forget(uint32_t plant);
 
  private:
-  struct Body {         // of one particle, now
-    Vec3 centre, axis;  // m; axis: half the length
-    float radius;       // m, the largest
+  struct Body {
     uint32_t plant, particle;
+    bool blade;
     uint64_t name() const { return uint64_t{plant} << 32 | particle; }
   };
   struct Kin {
     uint32_t parent, grandparent;  // particles of the same plant, or kNone
+    BranchId branch;
   };
   struct Memory {   // of a pair that touches
     uint64_t a, b;  // plant << 32 | particle
@@ -82,7 +80,7 @@ class PlantContacts {
   PlantContactOptions options_;
   BoxPairs tree_;                // over listed_
   std::vector<size_t> sizes_;    // of the plants that the list was made for
-  std::vector<Body> bodies_;     // of stems, by plant and particle
+  std::vector<Body> bodies_;     // by plant and particle
   std::vector<Kin> kin_;         // of bodies, for the list
   std::vector<FlatBox> boxes_;   // of now, with the way of one step
   std::vector<FlatBox> listed_;  // what the list looks at: boxes with a margin
