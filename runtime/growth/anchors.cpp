@@ -4,8 +4,14 @@
 
 #include "mesher/base/error.h"
 #include "runtime/sim/generalized_alpha.h"
+#include "runtime/sim/joints.h"
 
 namespace liana {
+namespace {
+
+constexpr double kGives = 3;  // times the force that a contact may push with: then the stem's joint holds yet
+
+}  // namespace
 
 bool Anchors::attach(Plant& plant, ParticleId particle, const Surroundings& around) {
   if (holds(particle)) return true;
@@ -60,7 +66,8 @@ void Anchors::update(Plant& plant, double dt_growth) {
       held = at_end - plant.scheme.dt * spring.target_velocity;
       spring.target = at_end - GeneralizedAlpha(plant.scheme.rho_infinity).alpha_f * (at_end - held);
     }
-    if ((motion.position - held).norm() > parameters_.release_distance) {
+    const double bearable = kGives * bearable_force(segment) / stiffness;
+    if ((motion.position - held).norm() > std::min(parameters_.release_distance, bearable)) {
       held_[spring.particle.index()] = 0;
       ++released_;
       continue;

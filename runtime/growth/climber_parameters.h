@@ -49,7 +49,7 @@ struct AnchorParameters {
   double stiffness = 400;          ///< N/m of an anchor of a young stem; grows with the stem's width
   double damping_time = 0.05;      ///< s, damping over stiffness
   double seconds_to_full = 2;      ///< growth seconds over which an anchor hardens
-  double release_distance = 0.008;  ///< m from the point of attachment, beyond which it tears off
+  double release_distance = 0.008;  ///< m, beyond which it tears off, if it does not before the stem would
 };
 
 struct ClimberParameters {

@@ -3,6 +3,7 @@
 #include "mesher/base/error.h"
 #include "runtime/sim/collision/box_mesh.h"
 #include "runtime/sim/discrete_response.h"
+#include "runtime/sim/joints.h"
 #include "runtime/sim/state_hash.h"
 #include "runtime/wind/sheltered_wind.h"
 #include "runtime/wind/steady_gust_wind.h"
@@ -250,10 +251,25 @@ TEST_F(AnchorsOnAWall, LetGoBeyondTheirDistance) {
   EXPECT_FALSE(anchors.holds(id));
 }
 
+TEST_F(AnchorsOnAWall, LetGoBeforeAWeakJointOpens) {
+  Particle& particle = plant.particles[0];
+  particle.joint.shear_stiffness = Vec3::Constant(500);
+  anchors.attach(plant, id, around);
+  anchors.update(plant, 100);
+  const double stiffness = plant.anchors[0].stiffness(0, 0);
+  const double opens = 0.02 * gap_scale(particle) * 500;  // N: the alarm of a time step
+  plant.motion[0].position.z() += 0.7 * opens / stiffness;
+  anchors.update(plant, 0.1);
+  EXPECT_EQ(anchors.count(), 1u);
+  plant.motion[0].position.z() += 0.2 * opens / stiffness;
+  anchors.update(plant, 0.1);
+  EXPECT_EQ(anchors.released(), 1u);
+}
+
 TEST_F(AnchorsOnAWall, ATautOneDoesNotMakeTheStemSpin) {
   Particle& particle = plant.particles[0];
   set_mass(particle, DomainKind::Branch, 800);
-  particle.joint.shear_stiffness = Vec3::Constant(200);
+  particle.joint.shear_stiffness = Vec3::Constant(2e4);
   particle.joint.bend_stiffness = Vec3::Constant(2e-4);
   anchors.attach(plant, id, around);
   particle.joint.on_parent += Vec3(0.004, 0, 0.004);  // it is pulled sideways and off the wall
