@@ -58,13 +58,18 @@ Meeting meet_as_capsules(const Shape& a, const Shape& b, const Vec3* side) {
   return met;
 }
 
-/// Of a stem a little longer than it is, so that the next one overlaps it; of a blade that is at least so
-/// thick, times its smaller half.
-Ellipsoid ellipsoid_of(const Shape& shape, double thickness) {
+/// Half of it, m; of a blade it is `least` times its smaller half at least.
+double thickness_of(const Shape& shape, double least) {
   const Particle& p = shape.particle;
-  const double least = shape.blade ? thickness * std::min(p.half_width, p.half_length) : 0;
+  return shape.blade ? std::max(p.half_thickness, least * std::min(p.half_width, p.half_length))
+                     : p.half_thickness;
+}
+
+/// Of a stem a little longer than it is, so that the next one overlaps it.
+Ellipsoid ellipsoid_of(const Shape& shape, double least_thickness) {
+  const Particle& p = shape.particle;
   const double beyond = shape.blade ? 0 : p.half_width;
-  const Vec3 halves(p.half_width, p.half_length + beyond, std::max(p.half_thickness, least));
+  const Vec3 halves(p.half_width, p.half_length + beyond, thickness_of(shape, least_thickness));
   return {shape.motion.position, shape.motion.orientation.toRotationMatrix() * halves.asDiagonal()};
 }
 
@@ -98,10 +103,37 @@ Meeting meet_as_ellipsoids(const Shape& a, const Shape& b, const Vec3* side, dou
 
 }  // namespace
 
-Vec3 extent(const Shape& shape) {
-  if (shape.blade) return ellipsoid_of(shape, kBladeDepth).axes.rowwise().norm();
-  const double radius = std::max(shape.particle.half_width, shape.particle.half_thickness);
-  return axis_of(shape).cwiseAbs().array() + radius;
+Outline::Outline(const Shape& shape) : centre(shape.motion.position.cast<float>()), blade(shape.blade) {
+  const Particle& p = shape.particle;
+  const Vec3 halves(p.half_width, p.half_length, thickness_of(shape, kBladeDepth));
+  axes = (shape.motion.orientation.toRotationMatrix() * halves.asDiagonal()).cast<float>();
+}
+
+Eigen::Vector3f Outline::half_box() const {
+  if (blade) return axes.rowwise().norm();
+  return axes.col(1).cwiseAbs().array() + radius();
+}
+
+// Of a blade's ellipsoid or around a stem's capsule.
+float Outline::reach(const Eigen::Vector3f& n) const {
+  return blade ? (axes.transpose() * n).norm() : std::abs(axes.col(1).dot(n)) + radius();
+}
+
+bool Outline::apart(const Outline& other, float gap) const {
+  constexpr float kRounding = 1e-5f;  // m
+  const Eigen::Vector3f r = centre - other.centre;
+  const float enough = gap + kRounding;
+  const auto parted_along = [&](const Eigen::Vector3f& n) {
+    return std::abs(n.dot(r)) - reach(n) - other.reach(n) > enough;
+  };
+  if (parted_along(r.stableNormalized())) return true;
+  if (blade && parted_along(axes.col(2).stableNormalized())) return true;
+  if (other.blade && parted_along(other.axes.col(2).stableNormalized())) return true;
+  if (blade || other.blade) return false;
+  // Across both: what the closest points of two lines are apart by, at least.
+  const Eigen::Vector3f across = axes.col(1).cross(other.axes.col(1));
+  const float size = across.norm();
+  return size > 0 && std::abs(across.dot(r)) / size - radius() - other.radius() > enough;
 }
 
 Meeting meet(const Shape& a, const Shape& b, const Vec3* side, double far) {

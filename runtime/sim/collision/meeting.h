@@ -1,6 +1,8 @@
 // How near two particles of plants are: stems as capsules, blades as ellipsoids.
 #pragma once
 
+#include <algorithm>
+
 #include "runtime/sim/plant.h"
 
 namespace liana {
@@ -12,8 +14,21 @@ struct Shape {
   bool blade;
 };
 
-/// Half the box around it, along the axes of the world, m.
-Vec3 extent(const Shape& shape);
+/// The same in single precision, for a first look at many.
+struct Outline {
+  Outline(const Shape& shape);
+  Eigen::Vector3f half_box() const;  ///< along the axes of the world, m
+  /// True if a quick look shows more than `gap` (m) between them; never if it is less.
+  bool apart(const Outline& other, float gap) const;
+
+  Eigen::Vector3f centre;  ///< m
+  Eigen::Matrix3f axes;    ///< columns: halves of width, length and thickness, m
+  bool blade;
+
+ private:
+  float radius() const { return std::max(axes.col(0).norm(), axes.col(2).norm()); }
+  float reach(const Eigen::Vector3f& n) const;
+};
 
 struct Meeting {
   Vec3 normal;        ///< unit, from b to a

@@ -3,14 +3,13 @@
 #include <algorithm>
 
 #include "mesher/base/error.h"
-#include "runtime/sim/collision/meeting.h"
 #include "runtime/sim/generalized_alpha.h"
 #include "runtime/sim/joints.h"
 
 namespace liana {
 namespace {
 
-constexpr double kApart = 5e-4;       // m, beyond which an exempt pair counts as come apart
+constexpr float kApart = 5e-4f;       // m, beyond which an exempt pair counts as come apart
 constexpr double kImpactSpeed = 0.1;  // m/s, beyond which elasticity shows
 constexpr float kRounding = 1e-5f;    // m, that single precision may take from a box
 
@@ -39,12 +38,11 @@ void PlantContacts::look_at(std::span<const Plant* const> plants) {
       const Motion& m = plant.motion[i];
       const double way =
           dt * (m.velocity.norm() + turning_speed(particle, m) + dt / 2 * m.acceleration.norm());
-      const Eigen::Vector3f x = m.position.cast<float>();
-      const Eigen::Vector3f along = extent({particle, m, blade}).cast<float>();
-      const float around = static_cast<float>(way) + kRounding;
+      const Body& body = bodies_.emplace_back(Outline({particle, m, blade}), static_cast<float>(way), k, i);
+      const Eigen::Vector3f &x = body.outline.centre, along = body.outline.half_box();
+      const float around = body.way + kRounding;
       const FlatBox::Corner centre{x.x(), x.y(), x.z(), 0},
           half{along.x() + around, along.y() + around, along.z() + around, 0};
-      bodies_.push_back({k, i, blade});
       boxes_.push_back({centre - half, centre + half});
     }
   }
@@ -92,7 +90,7 @@ bool PlantContacts::near_kin(uint32_t a, uint32_t b) const {
   const Body &x = bodies_[a], &y = bodies_[b];
   if (x.plant != y.plant) return false;
   const Kin &of_x = kin_[a], &of_y = kin_[b];
-  if (x.blade && of_x.branch == of_y.branch) return true;
+  if (x.outline.blade && of_x.branch == of_y.branch) return true;
   return of_x.parent == y.particle || of_y.parent == x.particle || of_x.grandparent == y.particle ||
          of_y.grandparent == x.particle ||
          (of_x.parent != kNone && (of_x.parent == of_y.parent || of_x.parent == of_y.grandparent)) ||
@@ -112,9 +110,11 @@ void PlantContacts::list_moved(std::span<const Plant* const> plants) {
     const uint32_t parent = above(bodies_[i].particle);
     kin_[i] = {parent, above(parent), plant.particles[bodies_[i].particle].branch};
     // The box holds one step's way already; the list is to last for several.
-    const double speed = plant.motion[bodies_[i].particle].velocity.norm();
-    const auto more = static_cast<float>(options_.margin + options_.list_steps * plant.scheme.dt * speed);
-    listed_[i] = {boxes_[i].low - more, boxes_[i].high + more};
+    const Vec3 on = options_.list_steps * plant.scheme.dt * plant.motion[bodies_[i].particle].velocity;
+    const Eigen::Vector3f to = on.cast<float>(), ahead = to.cwiseMax(0.0f), behind = to.cwiseMin(0.0f);
+    const auto margin = static_cast<float>(options_.margin);
+    listed_[i] = {boxes_[i].low + FlatBox::Corner{behind.x(), behind.y(), behind.z(), 0} - margin,
+                  boxes_[i].high + FlatBox::Corner{ahead.x(), ahead.y(), ahead.z(), 0} + margin};
   }
   tree_.fit(listed_);
 
@@ -164,9 +164,10 @@ PlantContactReport PlantContacts::gather(std::span<const Plant* const> plants,
   report.listed = moved_count_;
   next_memory_.clear();
   for (Candidate& candidate : candidates_) {
-    if (!boxes_[candidate.a].meets(boxes_[candidate.b])) {
-      candidate.memory = kNone;
-      continue;
+    if (candidate.memory == kNone) {
+      if (!boxes_[candidate.a].meets(boxes_[candidate.b])) continue;
+      const Body &a = bodies_[candidate.a], &b = bodies_[candidate.b];
+      if (a.outline.apart(b.outline, kApart + a.way + b.way)) continue;
     }
     touch(candidate, plants, springs, report);
   }
@@ -192,7 +193,7 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
   const Vec3* side = old != kNone && !memory.exempt ? &memory.normal : nullptr;
   const double far = kApart + dt * (mb.velocity - ma.velocity).norm() +
                      dt * (turning_speed(pa, ma) + turning_speed(pb, mb) + dt / 2 * acceleration.norm());
-  const Meeting met = meet({pa, ma, a.blade}, {pb, mb, b.blade}, side, far);
+  const Meeting met = meet({pa, ma, a.outline.blade}, {pb, mb, b.outline.blade}, side, far);
   if (met.gap > far) return;
   const auto& [n, gap, soft, arm_a, arm_b] = met;
   const Vec3 velocity_a = ma.velocity + ma.angular_velocity.cross(arm_a);
@@ -246,7 +247,9 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
                                                   flat(acceleration), at_end * k, limit, reduced, dt);
 
   const bool bounces = options_.feel.elasticity > 0 && approach < -kImpactSpeed;
-  const double way = std::min(-gap, options_.push_out_speed * dt);  // to be gone by both together
+  const double out =
+      a.outline.blade || b.outline.blade ? options_.blades_apart_speed : options_.push_out_speed;
+  const double way = std::min(-gap, out * dt);  // to be gone by both together
   const double push_out = way > 0 ? secant / k * way : way;
   const double settling = dt * std::clamp(1.25 - std::max(0.0, -approach) * dt / 4e-3, 0.25, 1.0);
   const Vec3 common = share_a * velocity_b + (1 - share_a) * velocity_a;

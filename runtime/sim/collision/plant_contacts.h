@@ -11,6 +11,7 @@
 
 #include "runtime/sim/collision/box_pairs.h"
 #include "runtime/sim/collision/contact_feel.h"
+#include "runtime/sim/collision/meeting.h"
 #include "runtime/sim/plant.h"
 #include "runtime/sim/topology.h"
 
@@ -18,11 +19,12 @@ namespace liana {
 
 struct PlantContactOptions {
   ContactFeel feel;
-  double stiffness_ratio = 10;  ///< normal stiffness of a light touch over reduced mass/Δt²
-  double deepest = 5;           ///< times Meeting::soft: what is deeper, or an impact, is no stiffer
-  double push_out_speed = 0.5;  ///< m/s, at which what is deep inside is moved out
-  double margin = 6e-3;         ///< m that lists of neighbours allow for turns
-  double list_steps = 2;        ///< steps at the present speed that they last for
+  double stiffness_ratio = 10;      ///< normal stiffness of a light touch over reduced mass/Δt²
+  double deepest = 5;               ///< times Meeting::soft: what is deeper, or an impact, is no stiffer
+  double push_out_speed = 0.5;      ///< m/s, at which what is deep inside is moved out
+  double blades_apart_speed = 0.1;  ///< m/s, the same for a blade
+  double margin = 12e-3;            ///< m that lists of neighbours allow all round
+  double list_steps = 6;            ///< steps at the present velocity that they allow for
 };
 
 struct PlantContactReport {
@@ -49,8 +51,9 @@ class PlantContacts {
 
  private:
   struct Body {
+    Outline outline;
+    float way;  // m, that it goes in a step at most
     uint32_t plant, particle;
-    bool blade;
     uint64_t name() const { return uint64_t{plant} << 32 | particle; }
   };
   struct Kin {
