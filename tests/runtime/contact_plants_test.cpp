@@ -312,6 +312,24 @@ TEST(PlantContacts, ABladeThatWasPiercedComesOffAtTheSideItCameFrom) {
   EXPECT_GT(two.plants[1].motion[0].position.y(), 0.033) << "its half length, and the stem's radius of 5 mm";
 }
 
+TEST(PlantContacts, NothingIsTooSmallTooLightOrTooNear) {
+  Together two;
+  two.plants.push_back(free_blade(Vec3::Zero(), kFlat, 3e-4, {0, -1, 0}));
+  two.plants.push_back(free_blade({0, -0.004, 0}, kFlat, 3e-4, Vec3::Zero()));
+  two.step();
+  Particle& small = two.plants[1].particles[0];
+  small.half_width = small.half_thickness = 0;
+  small.mass = 0;
+  small.inertia.setZero();
+  two.plants[1].motion[0].position = two.plants[0].motion[0].position;
+  std::vector<WorldSpring> springs[2];
+  const Plant* plants[] = {&two.plants[0], &two.plants[1]};
+  std::vector<WorldSpring>* lists[] = {&springs[0], &springs[1]};
+  two.contacts.gather(plants, lists);
+  for (const auto& list : springs)
+    for (const WorldSpring& s : list) EXPECT_TRUE(s.stiffness.allFinite() && s.target.allFinite());
+}
+
 TEST(PlantContacts, NeighboursAreFoundWhateverTheirSizes) {
   // Against all pairs, one by one.
   std::vector<FlatBox> boxes;

@@ -12,6 +12,7 @@ constexpr double kStemSoft = 0.15;    // of both's thickness
 constexpr double kBladeDepth = 0.05;  // of a blade's smaller half: at least that thick is it to others
 constexpr double kRound = 0.8;        // the same, to find where it is pushed
 constexpr double kDeepest = 0.5;      // of a blade's half width
+constexpr double kLeast = 1e-6;       // m, of a half
 
 struct ClosestPoints {
   double s, t;  // in [-1, 1] along each axis
@@ -54,7 +55,7 @@ Meeting meet_as_capsules(const Shape& a, const Shape& b, const Vec3* side) {
   if (side && met.normal.dot(*side) < 0) met.normal = -met.normal, distance = -distance;
   const double thickness = reach_across(a, met.normal) + reach_across(b, met.normal);
   met.gap = distance - thickness;
-  met.soft = kStemSoft * (thickness + 1e-6);
+  met.soft = kStemSoft * (thickness + kLeast);
   return met;
 }
 
@@ -70,7 +71,8 @@ Ellipsoid ellipsoid_of(const Shape& shape, double least_thickness) {
   const Particle& p = shape.particle;
   const double beyond = shape.blade ? 0 : p.half_width;
   const Vec3 halves(p.half_width, p.half_length + beyond, thickness_of(shape, least_thickness));
-  return {shape.motion.position, shape.motion.orientation.toRotationMatrix() * halves.asDiagonal()};
+  return {shape.motion.position,
+          shape.motion.orientation.toRotationMatrix() * halves.cwiseMax(kLeast).asDiagonal()};
 }
 
 /// The arm to the point of a stem's axis or of a blade's plane that is nearest to a point, nearly.
@@ -81,13 +83,14 @@ Vec3 arm_to(const Shape& shape, const Vec3& at) {
     return shape.motion.orientation * Vec3(0, std::clamp(local.y(), -p.half_length, p.half_length), 0);
   local.z() = 0;
   return shape.motion.orientation *
-         Vec3(local / std::max(1.0, std::hypot(local.x() / p.half_width, local.y() / p.half_length)));
+         Vec3(local / std::max(1.0, std::hypot(local.x() / std::max(kLeast, p.half_width),
+                                               local.y() / p.half_length)));
 }
 
 Meeting meet_as_ellipsoids(const Shape& a, const Shape& b, const Vec3* side, double far) {
   const Ellipsoid of_a = ellipsoid_of(a, kBladeDepth), of_b = ellipsoid_of(b, kBladeDepth);
   const auto width = [](const Shape& s) { return s.blade ? s.particle.half_width : HUGE_VAL; };
-  const double soft = std::min(width(a), width(b)), deepest = side ? kDeepest * soft : 0;
+  const double soft = std::max(kLeast, std::min(width(a), width(b))), deepest = side ? kDeepest * soft : 0;
   const EllipsoidTouch found = touch(of_a, of_b, std::max(far, deepest));
   Meeting met{found.normal, found.gap, soft, Vec3::Zero(), Vec3::Zero()};
   if (side && met.normal.dot(*side) < 0) {

@@ -227,7 +227,7 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
   // Springs to the world resist the acceleration of what moves together like a mass of kΔt²: soft where a
   // touch is light, hard where it would be deep. The force k₀δ (1 + d²), d the depth by `soft`, with its
   // own slope.
-  const double depth = std::min(-(gap + coming) / soft, options_.deepest);
+  const double depth = std::clamp(-(gap + coming) / soft, 0.0, options_.deepest);
   const double light = options_.stiffness_ratio * reduced / (dt * dt);
   const double bearable = std::min(bearable_force(pa), bearable_force(pb)) / std::max(1e-9, -gap);
   const double k = std::clamp(bearable, light / 4, light * (1 + 3 * depth * depth));
