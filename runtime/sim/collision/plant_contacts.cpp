@@ -38,7 +38,8 @@ void PlantContacts::look_at(std::span<const Plant* const> plants) {
       const Motion& m = plant.motion[i];
       const double way =
           dt * (m.velocity.norm() + turning_speed(particle, m) + dt / 2 * m.acceleration.norm());
-      const Body& body = bodies_.emplace_back(Outline({particle, m, blade}), static_cast<float>(way), k, i);
+      const Body& body =
+          bodies_.emplace_back(Body{Outline({particle, m, blade}), static_cast<float>(way), k, i});
       const Eigen::Vector3f &x = body.outline.centre, along = body.outline.half_box();
       const float around = body.way + kRounding;
       const FlatBox::Corner centre{x.x(), x.y(), x.z(), 0},
@@ -195,7 +196,8 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
                      dt * (turning_speed(pa, ma) + turning_speed(pb, mb) + dt / 2 * acceleration.norm());
   const Meeting met = meet({pa, ma, a.outline.blade}, {pb, mb, b.outline.blade}, side, far);
   if (met.gap > far) return;
-  const auto& [n, gap, soft, arm_a, arm_b] = met;
+  const Vec3 &n = met.normal, &arm_a = met.arm_a, &arm_b = met.arm_b;
+  const double gap = met.gap;
   const Vec3 velocity_a = ma.velocity + ma.angular_velocity.cross(arm_a);
   const Vec3 velocity_b = mb.velocity + mb.angular_velocity.cross(arm_b);
   const Vec3 velocity = velocity_a - velocity_b;
@@ -225,9 +227,9 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
   const double share_a = std::clamp(of_b / sum, 1e-3, 1 - 1e-3);
   const double reduced = sum * share_a * (1 - share_a);
   // Springs to the world resist the acceleration of what moves together like a mass of kΔt²: soft where a
-  // touch is light, hard where it would be deep. The force k₀δ (1 + d²), d the depth by `soft`, with its
-  // own slope.
-  const double depth = std::clamp(-(gap + coming) / soft, 0.0, options_.deepest);
+  // touch is light, hard where it would be deep. The force k₀δ (1 + d²), d the depth by met.soft, with
+  // its own slope.
+  const double depth = std::clamp(-(gap + coming) / met.soft, 0.0, options_.deepest);
   const double light = options_.stiffness_ratio * reduced / (dt * dt);
   const double bearable = std::min(bearable_force(pa), bearable_force(pb)) / std::max(1e-9, -gap);
   const double k = std::clamp(bearable, light / 4, light * (1 + 3 * depth * depth));
