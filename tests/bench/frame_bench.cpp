@@ -16,7 +16,8 @@ Scene ivies(size_t count, size_t particles) {
   Scene scene;
   scene.wind.velocity = {2.5, 0, 0.8};
   const double reach = kApart * static_cast<double>(count) / 2;
-  scene.obstacles.push_back({"wall", box_mesh({-reach, 0, -0.25}, {reach, 3, 0}), Vec3::Zero(), false, {}, {}, {}});
+  scene.obstacles.push_back(
+      {"wall", box_mesh({-reach, 0, -0.25}, {reach, 3, 0}), Vec3::Zero(), false, {}, {}, {}});
   for (size_t i = 0; i < count; ++i)
     scene.climbers.push_back({.bake = {},
                               .species = "ivy",
@@ -43,17 +44,26 @@ void grow_and_time(World& world, size_t wanted, benchmark::State& state) {
   state.counters["growth_ms"] = per_frame(after.seconds.growth - before.growth);
   state.counters["collision_ms"] = per_frame(after.seconds.collision - before.collision);
   state.counters["physics_ms"] = per_frame(after.seconds.physics - before.physics);
+  state.counters["touching_ms"] = per_frame(after.seconds.touching - before.touching);
+  state.counters["touches"] = static_cast<double>(after.plant_contacts);
   state.counters["air_ms"] = per_frame(after.seconds.wind - before.wind);
   if (after.air) state.counters["air"] = static_cast<double>(after.air->particles);
 }
 
 void frame_of_growing_ivies(benchmark::State& state) {
   for (auto _ : state) {
-    World world(ivies(8, 25000), 2);
+    Scene scene = ivies(8, 25000);
+    scene.plant_contacts = state.range(0) > 0;
+    World world(scene, 2);
     grow_and_time(world, 24900, state);
   }
 }
-BENCHMARK(frame_of_growing_ivies)->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(frame_of_growing_ivies)
+    ->ArgName("touching")
+    ->Arg(0)
+    ->Arg(1)
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
 
 void frame_of_ivies_in_air(benchmark::State& state) {
   for (auto _ : state) {
