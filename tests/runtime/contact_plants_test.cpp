@@ -326,6 +326,7 @@ TEST(PlantContacts, NothingIsTooSmallTooLightOrTooNear) {
   const Plant* plants[] = {&two.plants[0], &two.plants[1]};
   std::vector<WorldSpring>* lists[] = {&springs[0], &springs[1]};
   two.contacts.gather(plants, lists);
+  ASSERT_EQ(springs[0].size() + springs[1].size(), 2u);
   for (const auto& list : springs)
     for (const WorldSpring& s : list) EXPECT_TRUE(s.stiffness.allFinite() && s.target.allFinite());
 }

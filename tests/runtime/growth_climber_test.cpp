@@ -269,7 +269,7 @@ TEST_F(AnchorsOnAWall, LetGoBeforeAWeakJointOpens) {
 TEST_F(AnchorsOnAWall, ATautOneDoesNotMakeTheStemSpin) {
   Particle& particle = plant.particles[0];
   set_mass(particle, DomainKind::Branch, 800);
-  particle.joint.shear_stiffness = Vec3::Constant(2e4);
+  particle.joint.shear_stiffness = Vec3::Constant(1000);
   particle.joint.bend_stiffness = Vec3::Constant(2e-4);
   anchors.attach(plant, id, around);
   particle.joint.on_parent += Vec3(0.004, 0, 0.004);  // it is pulled sideways and off the wall
@@ -283,7 +283,7 @@ TEST_F(AnchorsOnAWall, ATautOneDoesNotMakeTheStemSpin) {
     if (i > 100) fastest = std::max(fastest, std::abs(spin.y()));
   }
   ASSERT_EQ(anchors.count(), 1u);
-  EXPECT_LT(fastest, 1e-3) << "rad/s";
+  EXPECT_LT(fastest, 1e-6) << "rad/s";
 }
 
 TEST(TipGrowth, SlidesAlongWhatItMeetsSquarely) {

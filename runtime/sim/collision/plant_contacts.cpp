@@ -215,7 +215,7 @@ void PlantContacts::touch(Candidate& candidate, std::span<const Plant* const> pl
   memory.exempt = false;
   const double approach = velocity.dot(n);
   const double coming = std::min(0.0, dt * approach + dt * dt / 2 * acceleration.dot(n));
-  // What has bounced leaves by itself.
+  // What settles is not let go on its way down (see contacts.cpp); what has bounced leaves by itself.
   if (gap + (side ? 3 : 1) * coming >= 0 || (options_.feel.elasticity > 0 && approach > kImpactSpeed)) return;
   ++report.contacts;
   report.max_overlap = std::max(report.max_overlap, -gap);
