@@ -5,8 +5,9 @@
 #   FOLDERS  source folders (relative to the top) whose *.cpp it compiles and whose headers it publishes
 #   LINKS    liana targets to its left, public
 #   VENDOR   third-party targets; private unless their headers are part of the interface
+#   OWN_FLAGS  its vendors add compiler flags, so it cannot share the precompiled header
 function(liana_library name)
-  cmake_parse_arguments(ARG "" "" "FOLDERS;LINKS;VENDOR" ${ARGN})
+  cmake_parse_arguments(ARG "OWN_FLAGS" "" "FOLDERS;LINKS;VENDOR" ${ARGN})
   get_property(rank GLOBAL PROPERTY liana_next_rank)
   if(NOT rank)
     set(rank 1)
@@ -33,6 +34,9 @@ function(liana_library name)
     add_library(${name} STATIC ${sources})
     target_include_directories(${name} PUBLIC ${view})
     target_link_libraries(${name} PUBLIC ${ARG_LINKS} PRIVATE liana_options ${ARG_VENDOR})
+    if(NOT ARG_OWN_FLAGS)
+      target_precompile_headers(${name} REUSE_FROM liana_headers)
+    endif()
   else()
     add_library(${name} INTERFACE)
     target_include_directories(${name} INTERFACE ${view})
@@ -40,14 +44,20 @@ function(liana_library name)
   endif()
 endfunction()
 
+# liana_own_flags(flags file ...): compiler flags of single files, which cannot share the precompiled header then.
+function(liana_own_flags flags)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "${flags}" SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+
 # liana_tests(folder LINKS targets ...): one GoogleTest program from tests/<folder>/*.cpp
 function(liana_tests folder)
   cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
-  file(GLOB found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${folder}/*.cpp)
+  file(GLOB_RECURSE found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${folder}/*.cpp)
   if(NOT found)
     return()
   endif()
   add_executable(test_${folder} ${found})
   target_link_libraries(test_${folder} PRIVATE liana_options liana_test_support ${ARG_LINKS} GTest::gtest GTest::gtest_main)
+  target_precompile_headers(test_${folder} REUSE_FROM liana_headers)
   gtest_discover_tests(test_${folder} PROPERTIES LABELS ${folder} TIMEOUT 300 DISCOVERY_TIMEOUT 60)
 endfunction()

@@ -33,13 +33,13 @@ struct BakedDomain {
   std::string route;             ///< how its surface was made solid
   DomainId solved_as;            ///< the domain whose modes it shares (itself if none)
 
-  std::vector<Station> centreline;  ///< from root to tip, at least 2
-  Vec3 flat_normal = Vec3::UnitZ(); ///< unit; the direction the lowest mode bends to
-  double stiffness_ratio = 1;       ///< (ν₂/ν₁)² of its two lowest bending modes: 1 for a round rod
+  std::vector<Station> centreline;   ///< from root to tip, at least 2
+  Vec3 flat_normal = Vec3::UnitZ();  ///< unit; the direction the lowest mode bends to
+  double stiffness_ratio = 1;        ///< (ν₂/ν₁)² of its two lowest bending modes: 1 for a round rod
 };
 
 struct Bake {
-  std::string plant;       ///< name of the plant file
+  std::string plant;  ///< name of the plant file
   uint64_t plant_hash = 0;
   uint64_t species_hash = 0;
   SpeciesLaw law;

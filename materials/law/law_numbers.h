@@ -37,7 +37,8 @@ void for_each_number_of_group(Group& group, Visit&& visit) {
   visit(NumberRange{"epsilon2", "", -4, 4}, group.epsilon2);
 }
 
-/// visit(NumberRange, double&) for what a group may leave out: the median model's ν, Eq. 11, and what it bears.
+/// visit(NumberRange, double&) for what a group may leave out: the median model's ν, Eq. 11, and what it
+/// bears.
 template <class Group, class Visit>
 void for_each_optional_number_of_group(Group& group, Visit&& visit) {
   visit(NumberRange{"median_frequency", "Hz", 0, 1e3}, group.median_frequency);

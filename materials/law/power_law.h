@@ -4,7 +4,7 @@
 #pragma once
 
 #include "materials/law/species_law.h"
-#include "mesher/base/taper_law.h"
+#include "modal/material/taper_law.h"
 
 namespace liana {
 

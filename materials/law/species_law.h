@@ -9,9 +9,9 @@
 #include <optional>
 #include <string>
 
-#include "mesher/base/elastic_material.h"
-#include "mesher/base/taper_law.h"
 #include "mesher/base/types.h"
+#include "modal/material/elastic_material.h"
+#include "modal/material/taper_law.h"
 
 namespace liana {
 
@@ -49,7 +49,7 @@ struct GroupLaw {
   double epsilon2 = 0;
   DampingLaw damping = {};
   double median_frequency = 0;  ///< ν_med, Hz, of the median model; 0: what Eq. 8 gives at the median length
-  double modulus_of_rupture = 0;   ///< Pa, bending stress at which it breaks; 0: not known
+  double modulus_of_rupture = 0;  ///< Pa, bending stress at which it breaks; 0: not known
   GroupMatch match = {};
   TaperLaw taper = {};  ///< of stiffness and density along each domain; uniform unless given
 };

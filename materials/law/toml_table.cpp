@@ -1,10 +1,10 @@
 #include "materials/law/toml_table.h"
 
 #include <fmt/core.h>
+#include <toml++/toml.h>
 
 #include <cmath>
 #include <set>
-#include <toml++/toml.h>
 
 #include "mesher/base/error.h"
 #include "mesher/base/files.h"
@@ -128,7 +128,8 @@ std::vector<TomlTable> TomlTable::tables(const std::string& key) const {
   if (!array) fail(key, fmt::format("must be given as [[{}]]", key));
   for (const toml::node& child : *array) {
     if (!child.is_table()) fail(key, fmt::format("must be given as [[{}]]", key));
-    children.push_back(TomlTable(std::make_shared<Node>(Node{node_->root, child.as_table(), node_->file, {}})));
+    children.push_back(
+        TomlTable(std::make_shared<Node>(Node{node_->root, child.as_table(), node_->file, {}})));
   }
   return children;
 }
@@ -147,8 +148,12 @@ void TomlTable::refuse_unknown_keys() const {
   }
 }
 
-const std::filesystem::path& TomlTable::file() const { return node_->file; }
+const std::filesystem::path& TomlTable::file() const {
+  return node_->file;
+}
 
-size_t TomlTable::line() const { return node_->table->source().begin.line; }
+size_t TomlTable::line() const {
+  return node_->table->source().begin.line;
+}
 
 }  // namespace liana

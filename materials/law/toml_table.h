@@ -11,8 +11,8 @@
 
 namespace liana {
 
-/// One table of a TOML file. Readers throw Error{Input} "file:line: key ..." when a value is absent and required, has
-/// the wrong type, is not finite or lies outside [least, most].
+/// One table of a TOML file. Readers throw Error{Input} "file:line: key ..." when a value is absent and
+/// required, has the wrong type, is not finite or lies outside [least, most].
 class TomlTable {
  public:
   static TomlTable read(const std::filesystem::path& path);

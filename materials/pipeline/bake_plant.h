@@ -8,7 +8,7 @@
 #include "mesher/base/progress.h"
 #include "mesher/plant/segmented_plant.h"
 #include "mesher/tets/tetrahedralize.h"
-#include "modal/lowest_mode.h"
+#include "modal/solve/lowest_mode.h"
 
 namespace liana {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "mesher/base/parallel.h"
-#include "mesher/surface/solid_domain.h"
+#include "mesher/solids/solidify/solid_domain.h"
 #include "mesher/tets/tetrahedralize.h"
-#include "modal/lowest_mode.h"
-#include "modal/taper_field.h"
+#include "modal/elements/taper_field.h"
+#include "modal/solve/lowest_mode.h"
 
 namespace liana {
 namespace {

@@ -5,7 +5,7 @@
 #include "materials/bake/bake.h"
 #include "mesher/io/vtu_writer.h"
 #include "mesher/plant/segmented_plant.h"
-#include "modal/united_modes.h"
+#include "modal/whole_plant/united_modes.h"
 
 namespace liana {
 

@@ -1,8 +1,8 @@
 // The stage between masses and laws: modes of every domain with what it carries.
 #include <fmt/core.h>
 
-#include "materials/pipeline/bake_cache.h"
-#include "materials/pipeline/cache_entries.h"
+#include "materials/cache/bake_cache.h"
+#include "materials/cache/cache_entries.h"
 #include "materials/pipeline/stages.h"
 #include "mesher/base/parallel.h"
 

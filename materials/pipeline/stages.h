@@ -5,10 +5,10 @@
 #include <unordered_map>
 #include <vector>
 
+#include "materials/cache/instances.h"
 #include "materials/pipeline/bake_plant.h"
-#include "materials/pipeline/instances.h"
-#include "mesher/surface/solid_domain.h"
-#include "modal/domain_modes.h"
+#include "mesher/solids/solidify/solid_domain.h"
+#include "modal/domains/domain_modes.h"
 
 namespace liana {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "materials/bake/bake.h"
-#include "mesher/surface/solid_domain.h"
+#include "mesher/solids/solidify/solid_domain.h"
 
 namespace liana {
 

@@ -1,9 +1,9 @@
 // The stages before the laws are known: every domain made solid, once for each shape.
 #include <algorithm>
 
+#include "materials/cache/bake_cache.h"
+#include "materials/cache/cache_entries.h"
 #include "materials/law/power_law.h"
-#include "materials/pipeline/bake_cache.h"
-#include "materials/pipeline/cache_entries.h"
 #include "materials/pipeline/stages.h"
 #include "mesher/base/parallel.h"
 

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <set>
 
-#include "materials/video/csv_line.h"
+#include "materials/video/tracks/csv_line.h"
 #include "mesher/base/error.h"
 #include "mesher/base/nearest_word.h"
 

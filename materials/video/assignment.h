@@ -6,7 +6,7 @@
 
 #include "materials/bake/bake.h"
 #include "materials/video/infer.h"
-#include "materials/video/point_tracks.h"
+#include "materials/video/tracks/point_tracks.h"
 
 namespace liana {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "materials/law/species_law.h"
-#include "materials/video/tree_modes.h"
+#include "materials/video/modes/tree_modes.h"
 
 namespace liana {
 

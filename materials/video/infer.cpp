@@ -7,7 +7,7 @@
 
 #include "materials/law/species_writer.h"
 #include "materials/video/assignment.h"
-#include "materials/video/camera_motion.h"
+#include "materials/video/tracks/camera_motion.h"
 #include "mesher/base/error.h"
 
 namespace liana {

@@ -8,8 +8,8 @@
 #include "materials/bake/bake.h"
 #include "materials/law/species_file.h"
 #include "materials/video/fit_law.h"
-#include "materials/video/point_modes.h"
-#include "materials/video/tree_modes.h"
+#include "materials/video/modes/point_modes.h"
+#include "materials/video/modes/tree_modes.h"
 
 namespace liana {
 

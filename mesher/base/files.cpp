@@ -16,14 +16,16 @@ std::string read_file(const fs::path& path, size_t max_bytes) {
   std::error_code code;
   const fs::file_status status = fs::status(path, code);
   if (!fs::exists(status))
-    throw Error(Error::Kind::Input, path.string() + ": no such file", "check the path; it is relative to the current folder");
+    throw Error(Error::Kind::Input, path.string() + ": no such file",
+                "check the path; it is relative to the current folder");
   if (fs::is_directory(status)) throw Error(Error::Kind::Input, path.string() + ": is a folder, not a file");
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error(Error::Kind::Input, path.string() + ": " + std::strerror(errno));
   in.seekg(0, std::ios::end);
   const auto size = static_cast<size_t>(in.tellg());
   if (size > max_bytes)
-    throw Error(Error::Kind::Input, path.string() + ": larger than the limit of " + std::to_string(max_bytes) + " bytes");
+    throw Error(Error::Kind::Input,
+                path.string() + ": larger than the limit of " + std::to_string(max_bytes) + " bytes");
   std::string bytes(size, '\0');
   in.seekg(0);
   in.read(bytes.data(), static_cast<std::streamsize>(size));
@@ -34,10 +36,12 @@ std::string read_file(const fs::path& path, size_t max_bytes) {
 AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)) {
   std::error_code code;
   if (fs::is_symlink(path_, code)) path_ = fs::weakly_canonical(path_);  // the link stays
-  if (const fs::file_status status = fs::status(path_, code); fs::exists(status) && !fs::is_regular_file(status))
+  if (const fs::file_status status = fs::status(path_, code);
+      fs::exists(status) && !fs::is_regular_file(status))
     throw Error(Error::Kind::Output, path_.string() + ": is no regular file", "name another output");
   partial_ = path_;
-  partial_.replace_filename(path_.stem().string() + "." + std::to_string(getpid()) + ".partial" + path_.extension().string());
+  partial_.replace_filename(path_.stem().string() + "." + std::to_string(getpid()) + ".partial" +
+                            path_.extension().string());
 }
 
 AtomicFile::~AtomicFile() {
@@ -66,7 +70,8 @@ void write_file(const fs::path& path, std::string_view bytes) {
                   "check that the folder exists, is writable and has space");
   };
   const std::string name = path.string();
-  if (name.starts_with("/dev/") || name.starts_with("/proc/")) return write(path);  // never replaced by a file
+  if (name.starts_with("/dev/") || name.starts_with("/proc/"))
+    return write(path);  // never replaced by a file
   AtomicFile file(path);
   write(file.partial());
   file.commit();

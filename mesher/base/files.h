@@ -12,8 +12,8 @@ namespace liana {
 /// Throws Error{Input} naming the path when it is missing, a folder, unreadable or above max_bytes.
 std::string read_file(const std::filesystem::path& path, size_t max_bytes = size_t{4} << 30);
 
-/// A file that appears under its own name only when complete: write to partial(), then commit(). Without commit()
-/// the destructor removes what was written.
+/// A file that appears under its own name only when complete: write to partial(), then commit(). Without
+/// commit() the destructor removes what was written.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path);

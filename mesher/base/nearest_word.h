@@ -26,9 +26,9 @@ inline size_t edit_distance(std::string_view a, std::string_view b) {
 
 /// Empty when there are no candidates.
 inline std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
-  const auto nearest = std::min_element(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
-    return edit_distance(word, a) < edit_distance(word, b);
-  });
+  const auto nearest = std::min_element(
+      candidates.begin(), candidates.end(),
+      [&](const auto& a, const auto& b) { return edit_distance(word, a) < edit_distance(word, b); });
   return nearest == candidates.end() ? std::string() : *nearest;
 }
 

@@ -9,8 +9,8 @@
 
 #include "mesher/base/error.h"
 #include "mesher/base/files.h"
-#include "mesher/base/mesh_checks.h"
-#include "mesher/base/weld.h"
+#include "mesher/geometry/mesh_checks.h"
+#include "mesher/geometry/weld.h"
 #include "mesher/io/gltf_model.h"
 #include "mesher/io/gltf_nodes.h"
 #include "mesher/io/leaf_names.h"

@@ -8,7 +8,7 @@
 
 #include "mesher/base/error.h"
 #include "mesher/base/memory.h"
-#include "mesher/base/polygon.h"
+#include "mesher/geometry/polygon.h"
 #include "mesher/io/ply_header.h"
 #include "mesher/io/text_cursor.h"
 #include "mesher/io/triangle_soup.h"

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <queue>
 
-#include "mesher/base/box_tree.h"
 #include "mesher/base/error.h"
 #include "mesher/base/parallel.h"
+#include "mesher/geometry/box_tree.h"
 
 namespace liana {
 namespace {

@@ -14,7 +14,7 @@
 #include "mesher/io/text_cursor.h"
 #include "mesher/shells/segment.h"
 #include "mesher/shells/unit_guess.h"
-#include "mesher/surface/branch_tubes.h"
+#include "mesher/solids/skins/branch_tubes.h"
 
 namespace liana {
 namespace {

@@ -8,13 +8,13 @@
 #include <unordered_set>
 
 #include "mesher/base/error.h"
-#include "mesher/base/mesh_checks.h"
 #include "mesher/base/parallel.h"
+#include "mesher/geometry/mesh_checks.h"
 #include "mesher/io/leaf_names.h"
 #include "mesher/shells/hierarchy.h"
 #include "mesher/shells/split_shells.h"
 #include "mesher/shells/unit_guess.h"
-#include "mesher/surface/skin_cut.h"
+#include "mesher/solids/skins/skin_cut.h"
 
 namespace liana {
 namespace {

@@ -6,8 +6,8 @@
 #include <map>
 #include <queue>
 
-#include "mesher/base/disjoint_sets.h"
-#include "mesher/base/mesh_checks.h"
+#include "mesher/geometry/disjoint_sets.h"
+#include "mesher/geometry/mesh_checks.h"
 
 namespace liana {
 namespace {

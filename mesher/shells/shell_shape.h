@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "mesher/base/mesh.h"
+#include "mesher/geometry/mesh.h"
 
 namespace liana {
 

@@ -7,10 +7,10 @@
 #include <span>
 #include <unordered_map>
 
-#include "mesher/base/disjoint_sets.h"
 #include "mesher/base/memory.h"
-#include "mesher/base/mesh_checks.h"
-#include "mesher/base/weld.h"
+#include "mesher/geometry/disjoint_sets.h"
+#include "mesher/geometry/mesh_checks.h"
+#include "mesher/geometry/weld.h"
 #include "mesher/io/leaf_names.h"
 
 namespace liana {

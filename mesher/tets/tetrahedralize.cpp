@@ -7,7 +7,7 @@
 
 #include "mesher/base/error.h"
 #include "mesher/base/hash.h"
-#include "mesher/surface/self_intersection.h"
+#include "mesher/exact/self_intersection.h"
 #include "mesher/tets/slivers.h"
 
 namespace liana {

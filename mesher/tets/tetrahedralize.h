@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "mesher/base/mesh.h"
+#include "mesher/geometry/mesh.h"
 #include "mesher/tets/tet_mesh.h"
 
 namespace liana {

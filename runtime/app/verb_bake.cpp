@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "materials/law/material_model.h"
-#include "runtime/app/bake_run.h"
-#include "runtime/app/manifest_run.h"
+#include "runtime/app/bake/bake_run.h"
+#include "runtime/app/bake/manifest_run.h"
 #include "runtime/app/plant_options.h"
 #include "runtime/app/verbs.h"
 

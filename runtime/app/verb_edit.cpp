@@ -6,8 +6,8 @@
 
 #include "runtime/app/verbs.h"
 #include "runtime/app/writable.h"
-#include "runtime/scene/session.h"
 #include "runtime/view/window.h"
+#include "runtime/world/session.h"
 
 namespace liana {
 namespace {
@@ -49,8 +49,9 @@ void add_edit_verb(CLI::App& app, int& exit_code) {
   verb->add_option(
       "--camera", arguments->camera,
       "Where to look from, as \"pivot 0 1 0 distance 5 azimuth 20 elevation 10\" [what the scene says]");
-  verb->add_option("--record", arguments->record,
-                   "Write all that is done, and the state after every step: liana simulate SCENE --replay FILE");
+  verb->add_option(
+      "--record", arguments->record,
+      "Write all that is done, and the state after every step: liana simulate SCENE --replay FILE");
   verb->add_flag("--paused", arguments->paused, "Start paused");
   verb->add_option("--threads", arguments->threads, "Threads to use [all cores]")->check(CLI::Range(0, 1024));
   verb->footer(

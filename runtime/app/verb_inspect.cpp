@@ -5,7 +5,7 @@
 
 #include "materials/law/species_file.h"
 #include "mesher/base/error.h"
-#include "runtime/app/inspect.h"
+#include "runtime/app/inspect/inspect.h"
 #include "runtime/app/plant_options.h"
 #include "runtime/app/verbs.h"
 

@@ -10,12 +10,12 @@
 #include "materials/pipeline/baked_solids.h"
 #include "mesher/base/files.h"
 #include "mesher/io/plant_file.h"
-#include "modal/interpolation.h"
+#include "modal/elements/interpolation.h"
 #include "runtime/app/terminal_progress.h"
 #include "runtime/app/verbs.h"
 #include "runtime/app/writable.h"
-#include "runtime/sim/particle_modes.h"
-#include "runtime/sim/plant_from_bake.h"
+#include "runtime/sim/calibrate/plant_from_bake.h"
+#include "runtime/sim/check/particle_modes.h"
 
 namespace liana {
 namespace {

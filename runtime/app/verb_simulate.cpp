@@ -13,9 +13,9 @@
 #include "runtime/app/verbs.h"
 #include "runtime/app/writable.h"
 #include "runtime/export/gltf_export.h"
-#include "runtime/scene/session.h"
 #include "runtime/view/renderer.h"
 #include "runtime/view/video.h"
+#include "runtime/world/session.h"
 
 namespace liana {
 namespace {
@@ -98,34 +98,40 @@ void print_summary(const World& world, double total_seconds, double render_secon
   const PhaseSeconds& s = report.seconds;
   fmt::print("{} steps, {} particles, {} anchors, deepest penetration {:.2f} mm, state {}\n", report.steps,
              report.particles, report.anchors, 1e3 * report.max_penetration, hash_text(world.state_hash()));
-  fmt::print("seconds: growth {:.2f}, collision {:.2f}, physics {:.2f}, render {:.2f}, total {:.2f}\n", s.growth,
-             s.collision, s.physics, render_seconds, total_seconds);
-  fmt::print("contacts in the last step: {} with obstacles, {} between plant parts ({} grown together, deepest overlap "
-             "{:.2f} mm, {:.2f} s)\n",
-             report.contacts, report.plant_contacts, report.grown_together, 1e3 * report.max_overlap, s.touching);
+  fmt::print("seconds: growth {:.2f}, collision {:.2f}, physics {:.2f}, render {:.2f}, total {:.2f}\n",
+             s.growth, s.collision, s.physics, render_seconds, total_seconds);
+  fmt::print(
+      "contacts in the last step: {} with obstacles, {} between plant parts ({} grown together, deepest "
+      "overlap "
+      "{:.2f} mm, {:.2f} s)\n",
+      report.contacts, report.plant_contacts, report.grown_together, 1e3 * report.max_overlap, s.touching);
   if (report.air) {
-    fmt::print("air: {} particles, {} substeps in {:.2f} s; {} emitted, {} left the domain\n", report.air->particles,
-               report.air->substeps, s.wind, report.air->emitted, report.air->left);
+    fmt::print("air: {} particles, {} substeps in {:.2f} s; {} emitted, {} left the domain\n",
+               report.air->particles, report.air->substeps, s.wind, report.air->emitted, report.air->left);
     if (report.air->refused > 0)
       fmt::print("note: {} air particles found no room (max_particles in [wind.air])\n", report.air->refused);
     if (report.air->limited > 0)
       fmt::print("note: {} air velocities were cut to twice the speed of sound\n", report.air->limited);
   }
   if (report.broken + report.shed + report.cut > 0)
-    fmt::print("came off: {} branches broke, {} leaves were shed, {} parts were cut; {} lie about ({} at rest)\n",
-               report.broken, report.shed, report.cut, report.fallen, report.asleep);
+    fmt::print(
+        "came off: {} branches broke, {} leaves were shed, {} parts were cut; {} lie about ({} at rest)\n",
+        report.broken, report.shed, report.cut, report.fallen, report.asleep);
   if (report.removed > 0)
     fmt::print("note: {} fallen parts were taken away, at rest for their time or blown out of the scene\n",
                report.removed);
-  if (report.redone_steps > 0) fmt::print("note: {} steps were redone with finer substeps\n", report.redone_steps);
+  if (report.redone_steps > 0)
+    fmt::print("note: {} steps were redone with finer substeps\n", report.redone_steps);
   if (report.reseated_joints > 0)
     fmt::print("note: {} joints were torn open and closed by hand\n", report.reseated_joints);
-  if (report.lost_steps > 0) fmt::print("note: {} steps did not stay finite and were stopped\n", report.lost_steps);
+  if (report.lost_steps > 0)
+    fmt::print("note: {} steps did not stay finite and were stopped\n", report.lost_steps);
   for (const std::string& note : world.notes()) fmt::print("note: {}\n", note);
 }
 
 int simulate(const SimulateArguments& arguments) {
-  for (const fs::path& output : {arguments.png, arguments.mp4, arguments.glb, arguments.report, arguments.record})
+  for (const fs::path& output :
+       {arguments.png, arguments.mp4, arguments.glb, arguments.report, arguments.record})
     if (!output.empty()) require_writable_folder(output);
   const Stopwatch total;
   const Scene scene = read_scene(arguments.scene);
@@ -189,29 +195,39 @@ int simulate(const SimulateArguments& arguments) {
 
 void add_simulate_verb(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<SimulateArguments>();
-  CLI::App* verb = app.add_subcommand("simulate", "Grow and move a scene without a display: picture, video, glTF");
+  CLI::App* verb =
+      app.add_subcommand("simulate", "Grow and move a scene without a display: picture, video, glTF");
   verb->add_option("scene", arguments->scene, "The scene (.toml); see data/scenes")->required();
   verb->add_option("--seconds", arguments->seconds, "Simulated time [what the scene says]")
       ->check(CLI::Range(0.0, 86400.0));
   verb->add_option("--png", arguments->png, "Write a picture of the end");
-  verb->add_option("--mp4", arguments->mp4, "Write a video: the run in fast motion, its end at its true pace");
+  verb->add_option("--mp4", arguments->mp4,
+                   "Write a video: the run in fast motion, its end at its true pace");
   verb->add_option("--video-seconds", arguments->video_seconds, "Length of the video")
-      ->check(CLI::Range(0.1, 3600.0))->capture_default_str();
-  verb->add_option("--true-pace", arguments->sway_seconds, "How many of them are at the true pace, at the end")
-      ->check(CLI::Range(0.0, 3600.0))->capture_default_str();
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  verb->add_option("--true-pace", arguments->sway_seconds,
+                   "How many of them are at the true pace, at the end")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
   verb->add_option("--size", arguments->size, "Width and height of the picture in pixels [1280 720]")
-      ->expected(2)->check(CLI::Range(16, 8192));
+      ->expected(2)
+      ->check(CLI::Range(16, 8192));
   verb->add_option("--video-size", arguments->video_size, "Width and height of the video [854 480]")
-      ->expected(2)->check(CLI::Range(16, 4096));
-  verb->add_flag("--smooth-video", arguments->smooth_video, "Smooth edges in the video, as a camera sees them (slower)");
+      ->expected(2)
+      ->check(CLI::Range(16, 4096));
+  verb->add_flag("--smooth-video", arguments->smooth_video,
+                 "Smooth edges in the video, as a camera sees them (slower)");
   verb->add_option("--export", arguments->glb, "Write the end as glTF (.glb)");
   verb->add_option("--report", arguments->report, "Write counts, state hash and timings as JSON");
-  CLI::Option* replay = verb->add_option(
-      "--replay", arguments->replay,
-      "Do again what was recorded, and stop with an error at the first step that differs [its --seconds: all]");
-  verb->add_option("--record", arguments->record, "Write the state after every step, to compare with --replay elsewhere")
+  CLI::Option* replay = verb->add_option("--replay", arguments->replay,
+                                         "Do again what was recorded, and stop with an error at the first "
+                                         "step that differs [its --seconds: all]");
+  verb->add_option("--record", arguments->record,
+                   "Write the state after every step, to compare with --replay elsewhere")
       ->excludes(replay);
-  verb->add_option("--threads", arguments->threads, "Threads to use [all cores]; the result does not depend on it")
+  verb->add_option("--threads", arguments->threads,
+                   "Threads to use [all cores]; the result does not depend on it")
       ->check(CLI::Range(0, 1024));
   verb->footer(
       "Examples:\n"

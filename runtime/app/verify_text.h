@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runtime/sim/verify.h"
+#include "runtime/sim/check/verify.h"
 
 namespace liana {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "mesher/base/mesh.h"
+#include "mesher/geometry/mesh.h"
 
 namespace tinygltf {
 class Model;

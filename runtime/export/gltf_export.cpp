@@ -9,9 +9,9 @@
 #include "mesher/base/error.h"
 #include "mesher/base/files.h"
 #include "runtime/export/gltf_builder.h"
-#include "runtime/view/leaf_mesh.h"
-#include "runtime/view/smooth_normals.h"
-#include "runtime/view/tube_mesh.h"
+#include "runtime/picture/leaf_mesh.h"
+#include "runtime/picture/smooth_normals.h"
+#include "runtime/picture/tube_mesh.h"
 
 namespace liana {
 namespace {

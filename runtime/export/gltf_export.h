@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "runtime/view/draw_scene.h"
+#include "runtime/picture/draw_scene.h"
 
 namespace liana {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "mesher/base/error.h"
-#include "runtime/sim/generalized_alpha.h"
-#include "runtime/sim/joints.h"
+#include "runtime/sim/step/generalized_alpha.h"
+#include "runtime/sim/step/joints.h"
 
 namespace liana {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "runtime/growth/climber_parameters.h"
 #include "runtime/growth/surroundings.h"
-#include "runtime/sim/plant.h"
-#include "runtime/sim/topology.h"
+#include "runtime/sim/model/plant.h"
+#include "runtime/sim/model/topology.h"
 
 namespace liana {
 

@@ -7,8 +7,8 @@
 #include "runtime/growth/branching.h"
 #include "runtime/growth/light.h"
 #include "runtime/growth/thickening.h"
-#include "runtime/sim/joints.h"
-#include "runtime/sim/rod_section.h"
+#include "runtime/sim/model/rod_section.h"
+#include "runtime/sim/step/joints.h"
 
 namespace liana {
 namespace {

@@ -13,8 +13,8 @@
 #include "runtime/growth/leaves.h"
 #include "runtime/growth/segments.h"
 #include "runtime/growth/shoot_growth.h"
-#include "runtime/sim/calibration.h"
-#include "runtime/sim/topology.h"
+#include "runtime/sim/calibrate/calibration.h"
+#include "runtime/sim/model/topology.h"
 
 namespace liana {
 
@@ -98,14 +98,14 @@ class Climber {
   struct ByJoint {
     Vec3 shear, bend;
   };
-  std::vector<ByJoint> stiffness_;  // N/m, N·m/rad, per particle, as the last call left it
-  std::vector<ByJoint> kept_;       // N, N·m, per particle
+  std::vector<ByJoint> stiffness_;                    // N/m, N·m/rad, per particle, as the last call left it
+  std::vector<ByJoint> kept_;                         // N, N·m, per particle
   std::vector<JointLoad> uncarried_, uncarried_now_;  // per particle, before the present call and in it
   HeldChain chain_;
   std::vector<RestPose> rest_;
   bool germinated_ = false;
-  size_t next_hold_ = 0;        // particle looked at next for a new anchor
-  size_t next_settled_ = 0;     // branch whose turn to be calibrated finely comes next
+  size_t next_hold_ = 0;     // particle looked at next for a new anchor
+  size_t next_settled_ = 0;  // branch whose turn to be calibrated finely comes next
 };
 
 }  // namespace liana

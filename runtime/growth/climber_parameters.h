@@ -45,10 +45,10 @@ struct LeafParameters {
 };
 
 struct AnchorParameters {
-  double touch_gap = 8e-3;         ///< m: a stem nearer than this puts roots on the surface
-  double stiffness = 400;          ///< N/m of an anchor of a young stem; grows with the stem's width
-  double damping_time = 0.05;      ///< s, damping over stiffness
-  double seconds_to_full = 2;      ///< growth seconds over which an anchor hardens
+  double touch_gap = 8e-3;          ///< m: a stem nearer than this puts roots on the surface
+  double stiffness = 400;           ///< N/m of an anchor of a young stem; grows with the stem's width
+  double damping_time = 0.05;       ///< s, damping over stiffness
+  double seconds_to_full = 2;       ///< growth seconds over which an anchor hardens
   double release_distance = 0.008;  ///< m, beyond which it tears off, if it does not before the stem would
 };
 
@@ -66,9 +66,9 @@ struct ClimberParameters {
   double recalibration =
       0.1;                ///< relative change of a branch's length or mass that lets it be calibrated at once
   double settled = 1e-3;  ///< the same, of a branch whose turn it is: all take turns, within 2.5 s at 25 ms
-  double weight_grown_in = 1;  ///< share of the weight that wood is shaped by; less: free shoots sag
-  double strength = 0;         ///< Pa that stems bear before they break; 0: any
-  double leaf_strength = 0;    ///< Pa that leaves bear
+  double weight_grown_in = 1;    ///< share of the weight that wood is shaped by; less: free shoots sag
+  double strength = 0;           ///< Pa that stems bear before they break; 0: any
+  double leaf_strength = 0;      ///< Pa that leaves bear
   Vec3 gravity = {0, -9.81, 0};  ///< m/s², that the plant grows under
   size_t max_particles = 5000;   ///< stems and leaves; laterals stop at 55-85 % of it, leaders at all of it
   TropismParameters tropisms;

@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "runtime/sim/topology.h"
+#include "runtime/sim/model/topology.h"
 
 namespace liana {
 

@@ -1,7 +1,7 @@
 // Wood that grows under weight is shaped by it: a climber at rest stands as it grew.
 #pragma once
 
-#include "runtime/sim/plant.h"
+#include "runtime/sim/model/plant.h"
 
 namespace liana {
 

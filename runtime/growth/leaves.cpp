@@ -5,7 +5,7 @@
 
 #include "runtime/growth/segments.h"
 #include "runtime/growth/tropisms.h"
-#include "runtime/sim/rod_section.h"
+#include "runtime/sim/model/rod_section.h"
 
 namespace liana {
 namespace {

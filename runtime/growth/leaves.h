@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "runtime/growth/shoot_growth.h"
-#include "runtime/sim/topology.h"
+#include "runtime/sim/model/topology.h"
 
 namespace liana {
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "runtime/sim/collision/sdf_obstacle.h"
+#include "runtime/obstacles/sdf_obstacle.h"
 
 namespace liana {
 

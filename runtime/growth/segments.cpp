@@ -1,6 +1,6 @@
 #include "runtime/growth/segments.h"
 
-#include "runtime/sim/rod_section.h"
+#include "runtime/sim/model/rod_section.h"
 
 namespace liana {
 

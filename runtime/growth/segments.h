@@ -4,7 +4,7 @@
 #pragma once
 
 #include "runtime/growth/surroundings.h"
-#include "runtime/sim/plant.h"
+#include "runtime/sim/model/plant.h"
 
 namespace liana {
 

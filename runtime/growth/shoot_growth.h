@@ -7,7 +7,7 @@
 #include "mesher/base/random.h"
 #include "runtime/growth/climber_parameters.h"
 #include "runtime/growth/surroundings.h"
-#include "runtime/sim/plant.h"
+#include "runtime/sim/model/plant.h"
 
 namespace liana {
 

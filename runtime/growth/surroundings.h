@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "runtime/sim/collision/sdf_obstacle.h"
+#include "runtime/obstacles/sdf_obstacle.h"
 
 namespace liana {
 

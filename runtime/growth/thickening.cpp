@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "runtime/growth/segments.h"
-#include "runtime/sim/calibration.h"
-#include "runtime/sim/rod_section.h"
+#include "runtime/sim/calibrate/calibration.h"
+#include "runtime/sim/model/rod_section.h"
 
 namespace liana {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "runtime/sim/plant.h"
+#include "runtime/sim/model/plant.h"
 
 namespace liana {
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <variant>
 
-#include "runtime/view/picking.h"
+#include "runtime/picture/picking.h"
+#include "runtime/picture/simulation_view.h"
 #include "runtime/view/renderer.h"
-#include "runtime/view/simulation_view.h"
 
 namespace liana {
 

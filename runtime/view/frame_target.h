@@ -3,8 +3,8 @@
 
 #include <optional>
 
+#include "runtime/picture/image.h"
 #include "runtime/view/gl_objects.h"
-#include "runtime/view/image.h"
 
 namespace liana {
 

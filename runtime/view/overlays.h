@@ -1,7 +1,7 @@
 // Text over the picture: numbers in a corner, help along the bottom. Needs an OpenGL context, current.
 #pragma once
 
-#include "runtime/view/simulation_view.h"
+#include "runtime/picture/simulation_view.h"
 
 struct ImGuiContext;
 

@@ -3,7 +3,7 @@
 #include <epoxy/gl.h>
 
 #include "mesher/base/error.h"
-#include "runtime/view/leaf_mesh.h"
+#include "runtime/picture/leaf_mesh.h"
 
 namespace liana {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "runtime/view/camera.h"
+#include "runtime/picture/camera.h"
 #include "runtime/view/frame_target.h"
 #include "runtime/view/gl_context_headless.h"
 #include "runtime/view/scene_buffers.h"

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "runtime/view/leaf_mesh.h"
-#include "runtime/view/pack.h"
-#include "runtime/view/smooth_normals.h"
+#include "runtime/picture/leaf_mesh.h"
+#include "runtime/picture/pack.h"
+#include "runtime/picture/smooth_normals.h"
 
 namespace liana {
 namespace {

@@ -1,9 +1,9 @@
 // The graphics card's copy of a DrawScene.
 #pragma once
 
-#include "runtime/view/draw_scene.h"
+#include "runtime/picture/draw_scene.h"
+#include "runtime/picture/tube_mesh.h"
 #include "runtime/view/gl_objects.h"
-#include "runtime/view/tube_mesh.h"
 
 namespace liana {
 

@@ -1,7 +1,7 @@
 // Depth as the sun sees it.
 #pragma once
 
-#include "runtime/view/draw_scene.h"
+#include "runtime/picture/draw_scene.h"
 #include "runtime/view/gl_objects.h"
 
 namespace liana {

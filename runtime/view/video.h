@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "mesher/base/files.h"
-#include "runtime/view/image.h"
+#include "runtime/picture/image.h"
 
 namespace liana {
 

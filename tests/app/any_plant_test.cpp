@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "mesher/base/files.h"
-#include "tests/support/hierarchy_score.h"
 #include "tests/support/program.h"
 #include "tests/support/scratch_folder.h"
-#include "tests/support/shapes.h"
+#include "tests/support/solids/hierarchy_score.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

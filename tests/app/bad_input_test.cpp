@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "mesher/base/files.h"
@@ -82,8 +82,7 @@ nlohmann::json gltf_with(const std::vector<float>& positions, const nlohmann::js
           {"accessors",
            {{{"bufferView", 0}, {"componentType", 5126}, {"count", positions.size() / 3}, {"type", "VEC3"}}}},
           {"bufferViews", {{{"buffer", 0}, {"byteLength", size}}}},
-          {"buffers",
-           {{{"byteLength", size}, {"uri", "data:application/octet-stream;base64," + base64}}}}};
+          {"buffers", {{{"byteLength", size}, {"uri", "data:application/octet-stream;base64," + base64}}}}};
 }
 
 const std::vector<float> kTriangle = {0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -96,7 +95,8 @@ TEST_F(BadInput, MissingFileIsNamed) {
 }
 
 TEST_F(BadInput, RandomBytesAreNoPlantNoSceneNoBake) {
-  for (const char* name : {"noise.glb", "noise.gltf", "noise.toml", "noise.bake"}) write(name, random_bytes(4096));
+  for (const char* name : {"noise.glb", "noise.gltf", "noise.toml", "noise.bake"})
+    write(name, random_bytes(4096));
   for (const char* name : {"noise.glb", "noise.gltf"})
     expect_refused({"bake", name, "--species", "apple", "-o", "x.bake"}, name);
   expect_refused({"bake", kSmallTree, "--species", "./noise.toml", "-o", "x.bake"}, "noise.toml");
@@ -108,7 +108,8 @@ TEST_F(BadInput, RandomBytesAreNoPlantNoSceneNoBake) {
 
 TEST_F(BadInput, TruncatedPlantIsRefused) {
   const std::string whole = read_file(kSmallTree);
-  for (const size_t size : {size_t{0}, size_t{7}, size_t{12}, size_t{21}, whole.size() / 2, whole.size() - 1}) {
+  for (const size_t size :
+       {size_t{0}, size_t{7}, size_t{12}, size_t{21}, whole.size() / 2, whole.size() - 1}) {
     write("cut.glb", whole.substr(0, size));
     expect_refused({"bake", "cut.glb", "--species", "apple", "-o", "x.bake"}, "cut.glb");
   }
@@ -163,7 +164,8 @@ Mesh moebius_band() {
     const double turn = 2 * kPi * i / n;
     for (const double across : {-0.02, 0.02}) {
       const double radius = 0.1 + across * std::cos(turn / 2);
-      band.positions.push_back({radius * std::cos(turn), 1 + across * std::sin(turn / 2), radius * std::sin(turn)});
+      band.positions.push_back(
+          {radius * std::cos(turn), 1 + across * std::sin(turn / 2), radius * std::sin(turn)});
     }
   }
   for (uint32_t i = 0; i < n; ++i) {
@@ -178,13 +180,14 @@ Mesh moebius_band() {
 TEST_F(BadInput, DomainThatCannotBeSolidIsNamedAndTheOthersAreBaked) {
   SegmentedPlant plant = read_plant(kSmallTree);
   const size_t sound = plant.domains.size();
-  plant.domains.push_back({.name = "moebius", .parent = DomainId(0), .level = 1, .group = "level1", .surface = moebius_band()});
+  plant.domains.push_back(
+      {.name = "moebius", .parent = DomainId(0), .level = 1, .group = "level1", .surface = moebius_band()});
   write_plant(plant, folder_ / "odd.glb");
 
   expect_refused({"bake", "odd.glb", "--species", "apple", "-o", "x.bake", "--strict"}, "moebius");
 
-  const ProgramResult partial =
-      run_liana({"bake", "odd.glb", "--species", "apple", "-o", "x.bake", "--report", "x.json"}, folder_.path());
+  const ProgramResult partial = run_liana(
+      {"bake", "odd.glb", "--species", "apple", "-o", "x.bake", "--report", "x.json"}, folder_.path());
   EXPECT_EQ(partial.exit_code, 3);
   EXPECT_THAT(partial.out + partial.err, HasSubstr("moebius"));
   EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "x.json"))["domains"].size(), sound);
@@ -205,7 +208,11 @@ TEST_F(BadInput, WindOfASceneIsRefusedWithItsLine) {
   const std::string climber = "[[climber]]\nspecies = \"ivy\"\nposition = [0, 0, 0]\n";  // lines 1 to 3
   const std::string emitter =
       "[wind]\n[[wind.emitter]]\ncenter = [-1, 1, 0]\ndirection = [1, 0, 0]\nspeed = 5\nradius = 0.5\n";
-  const struct { std::string text; int line; const char* said; } cases[] = {
+  const struct {
+    std::string text;
+    int line;
+    const char* said;
+  } cases[] = {
       {"[wind]\nvelocity = [300, 0, 0]\n", 5, "'velocity' is above 100 m/s"},
       {"[wind]\nvelocity = [1, 0, 0]\nkind = \"storm\"\n", 6, "'kind' must be"},
       {"[wind]\nvelocity = [0, 0, 0]\nkind = \"ambient\"\n", 5, "must not be zero"},
@@ -239,12 +246,14 @@ TEST_F(BadInput, PluckIsRefusedWithItsLineOrTheNameItMeans) {
 }
 
 TEST_F(BadInput, ObstaclesThatCannotMoveLikeThatAreRefusedWithTheirLine) {
-  const std::string scene = "[[climber]]\nspecies = \"ivy\"\nposition = [0, 0, 0]\n[[obstacle]]\n"
-                            "box = { center = [0, 1, 0], size = [1, 1, 1] }\n";
+  const std::string scene =
+      "[[climber]]\nspecies = \"ivy\"\nposition = [0, 0, 0]\n[[obstacle]]\n"
+      "box = { center = [0, 1, 0], size = [1, 1, 1] }\n";
   write("friction.toml", scene + "friction = 1.5\n");
   expect_refused({"simulate", "friction.toml"}, "friction.toml:6");
-  write("keys.toml", scene + "[obstacle.motion]\n[[obstacle.motion.keyframe]]\ntime = 2\n"
-                             "[[obstacle.motion.keyframe]]\ntime = 1\n");
+  write("keys.toml", scene +
+                         "[obstacle.motion]\n[[obstacle.motion.keyframe]]\ntime = 2\n"
+                         "[[obstacle.motion.keyframe]]\ntime = 1\n");
   expect_refused({"simulate", "keys.toml"}, "keys.toml:10");
   write("fast.toml", scene + "motion = { velocity = [0, 900, 0] }\n");
   expect_refused({"simulate", "fast.toml"}, "velocity");
@@ -252,9 +261,11 @@ TEST_F(BadInput, ObstaclesThatCannotMoveLikeThatAreRefusedWithTheirLine) {
 
 TEST_F(BadInput, AbsurdNumbersAreRefused) {
   const std::string apple = read_file(kData / "species/apple.toml");
-  expect_refused({"bake", kSmallTree, "--species", "apple", "--set", "default_material.density=-3", "-o", "x.bake"},
-                 "density");
-  expect_refused({"bake", kSmallTree, "--species", "apple", "--set", "level0.damping.delta=9", "-o", "x.bake"}, "delta");
+  expect_refused(
+      {"bake", kSmallTree, "--species", "apple", "--set", "default_material.density=-3", "-o", "x.bake"},
+      "density");
+  expect_refused(
+      {"bake", kSmallTree, "--species", "apple", "--set", "level0.damping.delta=9", "-o", "x.bake"}, "delta");
   const std::string climber = "[[climber]]\nspecies = \"ivy\"\nposition = [0, 0, 0]\n";
   write("many.toml", climber + "max_particles = 1e9\n");
   expect_refused({"simulate", "many.toml"}, "max_particles");

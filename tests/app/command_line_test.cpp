@@ -11,7 +11,7 @@
 #include "mesher/base/files.h"
 #include "mesher/io/plant_file.h"
 #include "tests/support/scratch_folder.h"
-#include "tests/support/shapes.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {
@@ -89,9 +89,9 @@ TEST_F(CommandLine, BakesAndInspectsWhatItBaked) {
   EXPECT_TRUE(says(baked, "13 domains"));
   EXPECT_TRUE(says(baked, "seconds: read"));
   EXPECT_EQ(baked.text.find('\033'), std::string::npos);  // nobody watches
-  for (const auto& [file, part] :
-       {std::pair(output, fmt::format("a bake (version {})", kBakeVersion)), std::pair(report, std::string("report of liana bake")),
-        std::pair(plant_, std::string("13 domains"))}) {
+  for (const auto& [file, part] : {std::pair(output, fmt::format("a bake (version {})", kBakeVersion)),
+                                   std::pair(report, std::string("report of liana bake")),
+                                   std::pair(plant_, std::string("13 domains"))}) {
     const Outcome inspected = shell("\"$L\" inspect --domains " + quoted(file));
     EXPECT_EQ(inspected.code, 0);
     EXPECT_TRUE(says(inspected, part));

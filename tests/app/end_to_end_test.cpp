@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mesher/base/files.h"
-#include "runtime/view/image.h"
+#include "runtime/picture/image.h"
 #include "tests/support/program.h"
 #include "tests/support/scratch_folder.h"
 
@@ -21,7 +21,9 @@ class EndToEnd : public testing::Test {
     const ProgramResult result = run_liana(arguments, folder_.path());
     ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
   }
-  nlohmann::json json(const std::string& name) const { return nlohmann::json::parse(read_file(folder_ / name)); }
+  nlohmann::json json(const std::string& name) const {
+    return nlohmann::json::parse(read_file(folder_ / name));
+  }
   void bake(const std::string& plant, const std::string& species) {
     run({"bake", kData / "plants" / (plant + ".glb"), "--species", species, "-o", plant + ".bake", "--report",
          plant + ".json"});
@@ -57,9 +59,9 @@ TEST_F(EndToEnd, ReportHasItsStableKeys) {
   for (const char* key : {"plant", "species", "seconds", "domains"}) EXPECT_TRUE(report.contains(key)) << key;
   for (const char* key : {"read", "surface", "tets", "modal", "laws", "total"})
     EXPECT_TRUE(report["seconds"].contains(key)) << key;
-  for (const char* key : {"id", "name", "parent", "kind", "level", "group", "length_m", "mass_kg", "tets", "dof",
-                          "nu_default_hz", "nu_hz", "alpha_k", "alpha_m", "youngs_pa", "density", "xi", "d_m", "d_k",
-                          "route", "solved_as"})
+  for (const char* key : {"id",        "name",    "parent", "kind",          "level", "group",   "length_m",
+                          "mass_kg",   "tets",    "dof",    "nu_default_hz", "nu_hz", "alpha_k", "alpha_m",
+                          "youngs_pa", "density", "xi",     "d_m",           "d_k",   "route",   "solved_as"})
     for (const auto& domain : report["domains"]) EXPECT_TRUE(domain.contains(key)) << key;
 }
 
@@ -97,8 +99,8 @@ TEST_F(EndToEnd, RecordedRunIsReplayedOrItsFirstDifferenceNamed) {
 
 TEST_F(EndToEnd, SimulateWritesPictureVideoAndModel) {
   write_file(folder_ / "scene.toml", "[[climber]]\nspecies = \"ivy\"\nposition = [0, 0, 0]\n");
-  run({"simulate", "scene.toml", "--seconds", "0.5", "--png", "a.png", "--size", "320", "180", "--mp4", "a.mp4",
-       "--video-seconds", "0.2", "--video-size", "160", "90", "--export", "a.glb"});
+  run({"simulate", "scene.toml", "--seconds", "0.5", "--png", "a.png", "--size", "320", "180", "--mp4",
+       "a.mp4", "--video-seconds", "0.2", "--video-size", "160", "90", "--export", "a.glb"});
   EXPECT_EQ(read_png(folder_ / "a.png").width, 320);
   EXPECT_EQ(read_file(folder_ / "a.glb").substr(0, 4), "glTF");
   EXPECT_EQ(read_file(folder_ / "a.mp4").substr(4, 4), "ftyp");

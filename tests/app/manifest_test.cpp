@@ -1,5 +1,5 @@
 // liana bake --manifest: libraries of plants.
-#include "runtime/app/manifest.h"
+#include "runtime/app/bake/manifest.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include "materials/bake/bake_file.h"
 #include "mesher/base/error.h"
 #include "mesher/base/files.h"
-#include "tests/support/large_plants.h"
+#include "tests/support/plants/large_plants.h"
 #include "tests/support/program.h"
 #include "tests/support/scratch_folder.h"
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mesher/base/files.h"
-#include "tests/support/large_plants.h"
+#include "tests/support/plants/large_plants.h"
 #include "tests/support/program.h"
 #include "tests/support/scratch_folder.h"
 

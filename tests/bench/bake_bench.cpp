@@ -1,10 +1,10 @@
 // Whole bakes in memory, from segmented plants to the bake. domains/s counts wall time on the threads given.
 #include <benchmark/benchmark.h>
 
+#include "materials/cache/bake_cache.h"
 #include "materials/law/species_file.h"
-#include "materials/pipeline/bake_cache.h"
 #include "materials/pipeline/bake_plant.h"
-#include "tests/support/large_plants.h"
+#include "tests/support/plants/large_plants.h"
 #include "tests/support/scratch_folder.h"
 
 namespace liana {

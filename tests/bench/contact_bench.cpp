@@ -4,10 +4,10 @@
 #include <cmath>
 #include <ctime>
 
-#include "runtime/sim/collision/plant_contacts.h"
-#include "runtime/sim/plant_from_bake.h"
-#include "runtime/sim/time_step.h"
-#include "tests/support/synthetic_bake.h"
+#include "runtime/sim/calibrate/plant_from_bake.h"
+#include "runtime/sim/contact/plant_contacts.h"
+#include "runtime/sim/step/time_step.h"
+#include "tests/support/plants/synthetic_bake.h"
 
 namespace liana {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "mesher/base/stopwatch.h"
-#include "runtime/scene/world.h"
-#include "runtime/sim/collision/box_mesh.h"
+#include "runtime/obstacles/box_mesh.h"
+#include "runtime/world/world.h"
 
 namespace liana {
 namespace {

@@ -3,10 +3,10 @@
 #include <benchmark/benchmark.h>
 
 #include "mesher/base/random.h"
-#include "runtime/sim/collision/box_mesh.h"
-#include "runtime/wind/sheltered_wind.h"
-#include "runtime/wind/steady_gust_wind.h"
-#include "tests/support/climber_scene.h"
+#include "runtime/obstacles/box_mesh.h"
+#include "runtime/wind/field/sheltered_wind.h"
+#include "runtime/wind/field/steady_gust_wind.h"
+#include "tests/support/scenes/climber_scene.h"
 
 namespace liana {
 namespace {

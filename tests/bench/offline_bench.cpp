@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "mesher/tets/tetrahedralize.h"
-#include "modal/assembly.h"
-#include "modal/domain_modes.h"
-#include "tests/support/shapes.h"
+#include "modal/domains/domain_modes.h"
+#include "modal/elements/assembly.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

@@ -7,13 +7,13 @@
 
 #include "mesher/base/parallel.h"
 #include "mesher/base/stopwatch.h"
-#include "runtime/sim/breaking.h"
-#include "runtime/sim/generalized_alpha.h"
-#include "runtime/sim/plant_from_bake.h"
-#include "runtime/sim/time_step.h"
-#include "runtime/sim/topology.h"
-#include "tests/support/reference_step.h"
-#include "tests/support/synthetic_bake.h"
+#include "runtime/sim/calibrate/plant_from_bake.h"
+#include "runtime/sim/model/breaking.h"
+#include "runtime/sim/model/topology.h"
+#include "runtime/sim/step/generalized_alpha.h"
+#include "runtime/sim/step/time_step.h"
+#include "tests/support/plants/reference_step.h"
+#include "tests/support/plants/synthetic_bake.h"
 
 namespace liana {
 namespace {

@@ -5,12 +5,12 @@
 #include <ctime>
 
 #include "mesher/base/random.h"
-#include "runtime/sim/collision/box_mesh.h"
-#include "runtime/sim/plant_from_bake.h"
-#include "runtime/wind/plant_coupling.h"
-#include "runtime/wind/sph_kernels.h"
-#include "runtime/wind/sph_wind.h"
-#include "tests/support/synthetic_bake.h"
+#include "runtime/obstacles/box_mesh.h"
+#include "runtime/sim/calibrate/plant_from_bake.h"
+#include "runtime/wind/air/plant_coupling.h"
+#include "runtime/wind/air/sph_kernels.h"
+#include "runtime/wind/air/sph_wind.h"
+#include "tests/support/plants/synthetic_bake.h"
 
 namespace liana {
 namespace {

@@ -1,7 +1,7 @@
 // parse_graph on any bytes, and what it gives written and read again.
 #include "mesher/base/error.h"
 #include "mesher/io/graph_file.h"
-#include "mesher/surface/branch_tubes.h"
+#include "mesher/solids/skins/branch_tubes.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   try {

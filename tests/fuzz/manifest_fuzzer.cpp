@@ -3,7 +3,7 @@
 #include <set>
 
 #include "mesher/base/error.h"
-#include "runtime/app/manifest.h"
+#include "runtime/app/bake/manifest.h"
 #include "tests/fuzz/fuzz_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

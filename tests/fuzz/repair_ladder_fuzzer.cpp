@@ -6,10 +6,10 @@
 #include <cstdlib>
 
 #include "mesher/base/error.h"
-#include "mesher/base/mesh_checks.h"
-#include "mesher/surface/self_intersection.h"
-#include "mesher/surface/skin_cut.h"
-#include "mesher/surface/solid_domain.h"
+#include "mesher/exact/self_intersection.h"
+#include "mesher/geometry/mesh_checks.h"
+#include "mesher/solids/skins/skin_cut.h"
+#include "mesher/solids/solidify/solid_domain.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace liana;

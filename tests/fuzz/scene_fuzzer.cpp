@@ -1,7 +1,7 @@
 // read_scene on any bytes, beside an empty bake, so that scenes may name one: everything in its range and
 // every index of something that is there, or an Error.
 #include "mesher/base/error.h"
-#include "runtime/scene/scene_file.h"
+#include "runtime/world/scene_file.h"
 #include "tests/fuzz/fuzz_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -1,7 +1,7 @@
 // parse_point_tracks on any bytes: a table of finite or missing positions, or an Error.
 #include <cmath>
 
-#include "materials/video/point_tracks.h"
+#include "materials/video/tracks/point_tracks.h"
 #include "mesher/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

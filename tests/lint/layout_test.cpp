@@ -51,7 +51,9 @@ bool starts_with_any(const std::string& text, const std::vector<std::string>& pr
   return false;
 }
 
-TEST(Layout, SourcesAreFound) { EXPECT_GT(includes().size(), 100u); }
+TEST(Layout, SourcesAreFound) {
+  EXPECT_GT(includes().size(), 100u);
+}
 
 TEST(Layout, IncludesAreNamedFromTheTop) {
   for (const Include& include : includes())
@@ -65,7 +67,8 @@ TEST(Layout, IncludesPointLeft) {
       if (path.rfind(order[i], 0) == 0) return static_cast<int>(i);
     return -1;
   };
-  for (const Include& include : includes()) EXPECT_LE(place(include.target), place(include.file)) << at(include);
+  for (const Include& include : includes())
+    EXPECT_LE(place(include.target), place(include.file)) << at(include);
 }
 
 TEST(Layout, TheSimulatorSeesNoMesherAndNoPictures) {
@@ -91,7 +94,8 @@ TEST(Layout, VendorHeadersStayAtHome) {
       {"GLFW/", {"runtime/view/"}},
       {"imgui", {"runtime/view/"}},
       {"stb_image", {"runtime/view/"}},
-      {"opencv2/", {"materials/video/feature_tracker.cpp", "materials/video/overlay_frame.cpp"}},
+      {"opencv2/",
+       {"materials/video/tracks/feature_tracker.cpp", "materials/video/tracks/overlay_frame.cpp"}},
       {"unsupported/", {"materials/video/"}},
       {"OpenMesh/", {"tests/"}},
       {"xxhash.h", {"mesher/base/hash.cpp"}},

@@ -1,4 +1,4 @@
-#include "materials/pipeline/bake_cache.h"
+#include "materials/cache/bake_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include "materials/bake/bake_file.h"
 #include "materials/pipeline/bake_plant.h"
 #include "mesher/base/files.h"
-#include "tests/support/large_plants.h"
+#include "tests/support/plants/large_plants.h"
 #include "tests/support/scratch_folder.h"
-#include "tests/support/shapes.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

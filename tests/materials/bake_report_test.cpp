@@ -1,4 +1,4 @@
-#include "materials/pipeline/bake_report.h"
+#include "materials/report/bake_report.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "materials/pipeline/html_report.h"
+#include "materials/report/html_report.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "materials/pipeline/model_comparison.h"
+#include "materials/report/model_comparison.h"
 #include "mesher/base/base64.h"
-#include "tests/support/shapes.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

@@ -1,9 +1,9 @@
-#include "materials/pipeline/instances.h"
+#include "materials/cache/instances.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/support/large_plants.h"
-#include "tests/support/shapes.h"
+#include "tests/support/plants/large_plants.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

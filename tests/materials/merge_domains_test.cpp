@@ -1,10 +1,10 @@
 // Coarse against fine decompositions: [Wang17] §7, Figure 18.
-#include "mesher/surface/merge_domains.h"
+#include "mesher/solids/unions/merge_domains.h"
 
 #include <gtest/gtest.h>
 
 #include "materials/pipeline/bake_plant.h"
-#include "tests/support/shapes.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

@@ -9,9 +9,9 @@
 #include "materials/law/power_law.h"
 #include "materials/pipeline/bake_plant.h"
 #include "materials/pipeline/baked_solids.h"
-#include "mesher/surface/solid_domain.h"
-#include "tests/support/damage.h"
-#include "tests/support/shapes.h"
+#include "mesher/solids/solidify/solid_domain.h"
+#include "tests/support/solids/damage.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

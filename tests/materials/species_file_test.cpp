@@ -129,7 +129,8 @@ TEST(SpeciesFile, DampingMayBeConstantRayleigh) {
 TEST(SpeciesFile, GroupsMayTaper) {
   const auto with = [](const std::string& numbers) { return std::string(kValid) + numbers; };
   const auto line = [](const char* key, double value) {
-    return std::string(key) + " = { value = " + std::to_string(value) + ", source = \"s\", confidence = \"low\" }\n";
+    return std::string(key) + " = { value = " + std::to_string(value) +
+           ", source = \"s\", confidence = \"low\" }\n";
   };
   const SpeciesLaw law = read_text(with(line("s_max", 1.5) + line("s_min", 0.25) + line("epsilon3", 3))).law;
   EXPECT_EQ(law.group("leaf").taper, (TaperLaw{1.5, 0.25, 3}));
@@ -137,7 +138,8 @@ TEST(SpeciesFile, GroupsMayTaper) {
   const size_t lines = static_cast<size_t>(std::count(kValid, kValid + std::string(kValid).size(), '\n'));
   for (const auto& [key, value] : {std::pair("s_max", 0.0), {"s_min", -1.0}, {"epsilon3", -2.0}}) {
     const std::string said = refusal(with(line(key, value)));
-    EXPECT_NE(said.find("species.toml:" + std::to_string(lines + 1) + ": '" + key), std::string::npos) << said;
+    EXPECT_NE(said.find("species.toml:" + std::to_string(lines + 1) + ": '" + key), std::string::npos)
+        << said;
   }
   EXPECT_NE(refusal(with("s_min = 0.5\n")).find("has no source"), std::string::npos);
   EXPECT_NE(refusal(with(line("s_mim", 0.5))).find("s_m"), std::string::npos);

@@ -1,4 +1,4 @@
-#include "mesher/base/box_tree.h"
+#include "mesher/geometry/box_tree.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "mesher/surface/geodesic.h"
+#include "mesher/solids/solidify/geodesic.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "tests/support/shapes.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

@@ -1,4 +1,4 @@
-#include "mesher/surface/grade.h"
+#include "mesher/solids/solidify/grade.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 #include <set>
 
-#include "mesher/base/mesh_checks.h"
-#include "mesher/surface/self_intersection.h"
-#include "tests/support/shapes.h"
+#include "mesher/exact/self_intersection.h"
+#include "mesher/geometry/mesh_checks.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

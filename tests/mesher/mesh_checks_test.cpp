@@ -1,9 +1,9 @@
-#include "mesher/base/mesh_checks.h"
+#include "mesher/geometry/mesh_checks.h"
 
 #include <gtest/gtest.h>
 
-#include "mesher/base/weld.h"
-#include "tests/support/shapes.h"
+#include "mesher/geometry/weld.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

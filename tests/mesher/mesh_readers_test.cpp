@@ -7,10 +7,10 @@
 #include "mesher/base/error.h"
 #include "mesher/base/files.h"
 #include "mesher/base/memory.h"
-#include "mesher/base/mesh_checks.h"
+#include "mesher/geometry/mesh_checks.h"
 #include "mesher/io/triangle_soup.h"
 #include "tests/support/scratch_folder.h"
-#include "tests/support/shapes.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {
@@ -130,7 +130,8 @@ TEST(PlyReader, ReadsWhatOpenMeshWrites) {
 
 TEST(RequireMemory, SaysHowMuchIsNeededAndFree) {
   EXPECT_NO_THROW(require_memory(1 << 20, "a small mesh"));
-  EXPECT_MENTIONS(complaint([] { require_memory(size_t{1} << 60, "a huge mesh"); }), "a huge mesh needs about");
+  EXPECT_MENTIONS(complaint([] { require_memory(size_t{1} << 60, "a huge mesh"); }),
+                  "a huge mesh needs about");
 }
 
 const std::string kHead =

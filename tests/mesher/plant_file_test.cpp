@@ -12,7 +12,7 @@
 #include "mesher/base/error.h"
 #include "mesher/base/files.h"
 #include "tests/support/scratch_folder.h"
-#include "tests/support/shapes.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

@@ -3,13 +3,13 @@
 #include <map>
 
 #include "mesher/base/error.h"
-#include "mesher/base/mesh_checks.h"
-#include "mesher/base/weld.h"
-#include "mesher/surface/mend.h"
-#include "mesher/surface/self_intersection.h"
-#include "mesher/surface/solid_domain.h"
-#include "mesher/surface/triangle_tree.h"
-#include "tests/support/damage.h"
+#include "mesher/exact/self_intersection.h"
+#include "mesher/geometry/mesh_checks.h"
+#include "mesher/geometry/triangle_tree.h"
+#include "mesher/geometry/weld.h"
+#include "mesher/solids/repair/mend.h"
+#include "mesher/solids/solidify/solid_domain.h"
+#include "tests/support/solids/damage.h"
 
 namespace liana {
 namespace {

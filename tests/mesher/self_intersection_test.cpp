@@ -1,8 +1,8 @@
-#include "mesher/surface/self_intersection.h"
+#include "mesher/exact/self_intersection.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/support/shapes.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

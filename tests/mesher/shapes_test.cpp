@@ -1,5 +1,5 @@
 // The shapes that other tests rely on are what they claim.
-#include "tests/support/shapes.h"
+#include "tests/support/solids/shapes.h"
 
 #include <gtest/gtest.h>
 

@@ -12,10 +12,10 @@
 #include "mesher/shells/shell_shape.h"
 #include "mesher/shells/split_shells.h"
 #include "mesher/shells/unit_guess.h"
-#include "tests/support/hierarchy_score.h"
 #include "tests/support/scratch_folder.h"
-#include "tests/support/shapes.h"
-#include "tests/support/skins.h"
+#include "tests/support/solids/hierarchy_score.h"
+#include "tests/support/solids/shapes.h"
+#include "tests/support/solids/skins.h"
 
 namespace liana {
 namespace {

@@ -6,13 +6,13 @@
 #include <fstream>
 
 #include "mesher/base/error.h"
-#include "mesher/base/mesh_checks.h"
+#include "mesher/exact/self_intersection.h"
+#include "mesher/geometry/mesh_checks.h"
 #include "mesher/io/graph_file.h"
 #include "mesher/io/mtg_file.h"
 #include "mesher/shells/load_plant.h"
-#include "mesher/surface/branch_tubes.h"
-#include "mesher/surface/self_intersection.h"
-#include "mesher/surface/solid_domain.h"
+#include "mesher/solids/skins/branch_tubes.h"
+#include "mesher/solids/solidify/solid_domain.h"
 #include "tests/support/scratch_folder.h"
 
 namespace liana {

@@ -1,14 +1,14 @@
-#include "mesher/surface/skin_cut.h"
+#include "mesher/solids/skins/skin_cut.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "mesher/base/mesh_checks.h"
-#include "mesher/surface/self_intersection.h"
-#include "tests/support/damage.h"
-#include "tests/support/shapes.h"
-#include "tests/support/skins.h"
+#include "mesher/exact/self_intersection.h"
+#include "mesher/geometry/mesh_checks.h"
+#include "tests/support/solids/damage.h"
+#include "tests/support/solids/shapes.h"
+#include "tests/support/solids/skins.h"
 
 namespace liana {
 namespace {

@@ -1,4 +1,4 @@
-#include "mesher/surface/solid_domain.h"
+#include "mesher/solids/solidify/solid_domain.h"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,12 @@
 #include <random>
 
 #include "mesher/base/error.h"
-#include "mesher/base/mesh_checks.h"
-#include "mesher/base/weld.h"
+#include "mesher/exact/self_intersection.h"
+#include "mesher/geometry/mesh_checks.h"
+#include "mesher/geometry/weld.h"
 #include "mesher/io/plant_file.h"
-#include "mesher/surface/self_intersection.h"
-#include "tests/support/damage.h"
-#include "tests/support/shapes.h"
+#include "tests/support/solids/damage.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

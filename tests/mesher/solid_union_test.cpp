@@ -1,18 +1,18 @@
-#include "mesher/surface/solid_union.h"
+#include "mesher/exact/solid_union.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
 
-#include "mesher/base/mesh_checks.h"
 #include "mesher/base/progress.h"
+#include "mesher/exact/self_intersection.h"
+#include "mesher/geometry/mesh_checks.h"
 #include "mesher/io/plant_file.h"
-#include "mesher/surface/merge_domains.h"
-#include "mesher/surface/self_intersection.h"
-#include "mesher/surface/solid_domain.h"
+#include "mesher/solids/solidify/solid_domain.h"
+#include "mesher/solids/unions/merge_domains.h"
 #include "mesher/tets/tetrahedralize.h"
-#include "tests/support/shapes.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

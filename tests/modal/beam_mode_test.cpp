@@ -1,4 +1,4 @@
-#include "modal/beam_mode.h"
+#include "modal/domains/beam_mode.h"
 
 #include <gtest/gtest.h>
 

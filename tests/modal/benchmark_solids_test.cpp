@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "mesher/tets/tetrahedralize.h"
-#include "modal/subspace_iteration.h"
-#include "tests/support/block_tets.h"
+#include "modal/solve/subspace_iteration.h"
 #include "tests/support/closed_forms.h"
+#include "tests/support/solids/block_tets.h"
 
 namespace liana {
 namespace {

@@ -1,4 +1,4 @@
-#include "modal/domain_modes.h"
+#include "modal/domains/domain_modes.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <deque>
 
 #include "tests/support/closed_forms.h"
-#include "tests/support/shapes.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

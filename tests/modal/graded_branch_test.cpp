@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "mesher/surface/solid_domain.h"
+#include "mesher/solids/solidify/solid_domain.h"
 #include "mesher/tets/tetrahedralize.h"
-#include "modal/lowest_mode.h"
-#include "tests/support/shapes.h"
+#include "modal/solve/lowest_mode.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

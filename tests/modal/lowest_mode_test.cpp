@@ -1,4 +1,4 @@
-#include "modal/lowest_mode.h"
+#include "modal/solve/lowest_mode.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 
 #include "mesher/base/error.h"
 #include "mesher/tets/tetrahedralize.h"
-#include "tests/support/block_tets.h"
 #include "tests/support/closed_forms.h"
-#include "tests/support/shapes.h"
+#include "tests/support/solids/block_tets.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

@@ -1,5 +1,5 @@
 // The same matrices through Spectra and ARPACK, the same mesh through CalculiX.
-#include "tests/support/other_solvers.h"
+#include "tests/support/solids/other_solvers.h"
 
 #include <Spectra/MatOp/SparseSymMatProd.h>
 #include <Spectra/MatOp/SymShiftInvert.h>
@@ -15,13 +15,13 @@
 #include <fstream>
 #include <sstream>
 
-#include "mesher/surface/solid_domain.h"
+#include "mesher/solids/solidify/solid_domain.h"
 #include "mesher/tets/tetrahedralize.h"
-#include "modal/element_matrices.h"
-#include "modal/lowest_mode.h"
-#include "modal/subspace_iteration.h"
-#include "tests/support/block_tets.h"
-#include "tests/support/shapes.h"
+#include "modal/elements/element_matrices.h"
+#include "modal/solve/lowest_mode.h"
+#include "modal/solve/subspace_iteration.h"
+#include "tests/support/solids/block_tets.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

@@ -2,14 +2,14 @@
 #include <gtest/gtest.h>
 
 #include "mesher/base/error.h"
-#include "mesher/base/weld.h"
-#include "mesher/surface/attachment.h"
-#include "mesher/surface/beam_shape.h"
-#include "mesher/surface/solid_domain.h"
-#include "modal/beam_mode.h"
-#include "modal/domain_modes.h"
+#include "mesher/geometry/weld.h"
+#include "mesher/solids/sections/beam_shape.h"
+#include "mesher/solids/solidify/attachment.h"
+#include "mesher/solids/solidify/solid_domain.h"
+#include "modal/domains/beam_mode.h"
+#include "modal/domains/domain_modes.h"
 #include "tests/support/closed_forms.h"
-#include "tests/support/damage.h"
+#include "tests/support/solids/damage.h"
 
 namespace liana {
 namespace {

@@ -1,11 +1,11 @@
 // A branch cut from a welded skin swings like the branch alone.
 #include <gtest/gtest.h>
 
-#include "mesher/surface/skin_cut.h"
-#include "mesher/surface/solid_domain.h"
-#include "modal/domain_modes.h"
+#include "mesher/solids/skins/skin_cut.h"
+#include "mesher/solids/solidify/solid_domain.h"
+#include "modal/domains/domain_modes.h"
 #include "tests/support/closed_forms.h"
-#include "tests/support/skins.h"
+#include "tests/support/solids/skins.h"
 
 namespace liana {
 namespace {

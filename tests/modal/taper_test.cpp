@@ -4,8 +4,8 @@
 #include <Eigen/Eigenvalues>
 
 #include "mesher/tets/tetrahedralize.h"
-#include "modal/domain_modes.h"
-#include "modal/taper_field.h"
+#include "modal/domains/domain_modes.h"
+#include "modal/elements/taper_field.h"
 #include "tests/support/closed_forms.h"
 
 namespace liana {
@@ -73,7 +73,8 @@ TEST(Taper, EqualFactorsEverywhereAreAUniformMaterial) {
 TEST(Taper, FactorsFallFromTheRootByGeodesicDistance) {
   const MarkedMesh mesh = branch(1, 0.05, 16);
   const TetMesh tets = tetrahedralize(mesh.mesh, mesh.is_root);
-  const std::vector<ElementScaling> scaling = tapered(tets, {.root_scaling = 1, .tip_scaling = 0, .epsilon3 = 1});
+  const std::vector<ElementScaling> scaling =
+      tapered(tets, {.root_scaling = 1, .tip_scaling = 0, .epsilon3 = 1});
   for (size_t e = 0; e < tets.tets.size(); ++e) {
     double y = 0;
     for (const uint32_t v : tets.tets[e]) y += tets.positions[v].y() / 4;

@@ -7,8 +7,8 @@
 
 #include "mesher/base/error.h"
 #include "mesher/tets/assertion_guard.h"
-#include "tests/support/block_tets.h"
-#include "tests/support/shapes.h"
+#include "tests/support/solids/block_tets.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "mesher/base/elastic_material.h"
 #include "mesher/base/types.h"
-#include "tests/support/shapes.h"
+#include "modal/material/elastic_material.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 

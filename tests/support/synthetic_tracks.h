@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "materials/video/point_tracks.h"
+#include "materials/video/tracks/point_tracks.h"
 #include "mesher/base/random.h"
 #include "mesher/base/types.h"
 

@@ -12,10 +12,10 @@
 
 #include "mesher/base/error.h"
 #include "mesher/tets/tetrahedralize.h"
-#include "modal/subspace_iteration.h"
-#include "tests/support/other_solvers.h"
+#include "modal/solve/subspace_iteration.h"
 #include "tests/support/scratch_folder.h"
-#include "tests/support/shapes.h"
+#include "tests/support/solids/other_solvers.h"
+#include "tests/support/solids/shapes.h"
 
 namespace liana {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "tests/support/large_plants.h"
+#include "tests/support/plants/large_plants.h"
 
 int main(int argc, char** argv) {
   const std::string kind = argc > 1 ? argv[1] : "";

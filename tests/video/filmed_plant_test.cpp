@@ -1,6 +1,6 @@
 // Materials from video, end to end: a plant of known material is filmed by our own renderer, and what the
 // video tells of it is compared with what it was given.
-#include "tests/support/filmed_plant.h"
+#include "tests/support/plants/filmed_plant.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include "materials/bake/bake_file.h"
 #include "materials/law/species_file.h"
 #include "mesher/base/files.h"
-#include "runtime/scene/world.h"
 #include "runtime/view/video.h"
+#include "runtime/world/world.h"
 #include "tests/support/program.h"
 #include "tests/support/scratch_folder.h"
 

@@ -1,9 +1,9 @@
 // Frequencies and damping of single records, and whether their stated uncertainty is true.
 #include <gtest/gtest.h>
 
-#include "materials/video/decay_fit.h"
-#include "materials/video/gust_fit.h"
-#include "materials/video/point_modes.h"
+#include "materials/video/modes/decay_fit.h"
+#include "materials/video/modes/gust_fit.h"
+#include "materials/video/modes/point_modes.h"
 #include "mesher/base/error.h"
 #include "tests/support/synthetic_tracks.h"
 

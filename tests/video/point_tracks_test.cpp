@@ -1,11 +1,11 @@
 // Point tracks as files, gaps and cameras.
-#include "materials/video/point_tracks.h"
+#include "materials/video/tracks/point_tracks.h"
 
 #include <gtest/gtest.h>
 
-#include "materials/video/camera_motion.h"
-#include "materials/video/main_direction.h"
-#include "materials/video/similarity.h"
+#include "materials/video/modes/main_direction.h"
+#include "materials/video/tracks/camera_motion.h"
+#include "materials/video/tracks/similarity.h"
 #include "mesher/base/error.h"
 #include "tests/support/synthetic_tracks.h"
 

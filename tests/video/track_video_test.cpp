@@ -1,12 +1,12 @@
 // Points in a video whose camera shakes: drawn by formula, so that every position is known.
-#include "materials/video/track_video.h"
+#include "materials/video/tracks/track_video.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "materials/video/point_modes.h"
+#include "materials/video/modes/point_modes.h"
 #include "mesher/base/random.h"
 #include "mesher/base/types.h"
 #include "runtime/view/video.h"

@@ -1,4 +1,4 @@
-#include "runtime/view/camera.h"
+#include "runtime/picture/camera.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/view/overlays.h"
-#include "tests/support/draw_plants.h"
+#include "tests/support/plants/draw_plants.h"
 
 namespace liana {
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "mesher/base/error.h"
-#include "tests/support/draw_plants.h"
+#include "tests/support/plants/draw_plants.h"
 
 namespace liana {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "mesher/base/error.h"
 #include "mesher/base/files.h"
-#include "runtime/view/image.h"
+#include "runtime/picture/image.h"
 #include "runtime/view/video.h"
 
 namespace liana {

@@ -1,9 +1,9 @@
-#include "runtime/view/plant_drawing.h"
+#include "runtime/picture/plant_drawing.h"
 
 #include <gtest/gtest.h>
 
-#include "runtime/view/leaf_mesh.h"
-#include "tests/support/draw_plants.h"
+#include "runtime/picture/leaf_mesh.h"
+#include "tests/support/plants/draw_plants.h"
 
 namespace liana {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "mesher/base/error.h"
-#include "tests/support/draw_scenes.h"
+#include "tests/support/scenes/draw_scenes.h"
 
 namespace liana {
 namespace {

@@ -1,13 +1,13 @@
-#include "runtime/view/tube_mesh.h"
+#include "runtime/picture/tube_mesh.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
 
-#include "runtime/view/leaf_mesh.h"
-#include "runtime/view/smooth_normals.h"
-#include "tests/support/draw_scenes.h"
+#include "runtime/picture/leaf_mesh.h"
+#include "runtime/picture/smooth_normals.h"
+#include "tests/support/scenes/draw_scenes.h"
 
 namespace liana {
 namespace {

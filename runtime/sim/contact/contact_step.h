@@ -1,0 +1,42 @@
+// A time step that ends outside of solids: step, look, and step again with the contacts that were missed.
+#pragma once
+
+#include "runtime/sim/contact/contacts.h"
+#include "runtime/sim/step/time_step.h"
+
+namespace liana {
+
+struct ContactStepOptions {
+  double tolerance = 5e-4;  ///< m inside a solid that does not make a step be taken again
+  int most_passes = 4;      ///< times a step is taken at most
+};
+
+struct ContactStepReport {
+  StepReport step;               ///< of the pass that was kept
+  ContactReport contacts;        ///< penetration is that of the state before the step
+  int passes = 0;                ///< how often the step was taken
+  int solves = 0;                ///< of all passes
+  double collision_seconds = 0;  ///< wall clock, spent looking for contacts
+};
+
+/// PlantStepper::step() with contacts. springs: wind, grabs; the contacts are appended. Keep one per plant.
+class ContactStepper {
+ public:
+  explicit ContactStepper(const ContactOptions& contacts = {}, const ContactStepOptions& options = {})
+      : contacts_(contacts), options_(options) {}
+
+  ContactStepReport step(Plant& plant, const CollisionScene& scene, std::span<const Wrench> external,
+                         std::vector<WorldSpring>& springs, const StepOptions& options);
+
+  /// The plant lost particles.
+  void follow(const TopologyChange& change) { contacts_.follow(change); }
+
+  Contacts& contacts() { return contacts_; }
+
+ private:
+  Contacts contacts_;
+  ContactStepOptions options_;
+  PlantStepper stepper_;
+};
+
+}  // namespace liana

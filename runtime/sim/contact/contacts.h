@@ -1,0 +1,72 @@
+// Contacts of a plant with obstacles and the ground, as springs to the world for the next time step.
+//
+// A contact is made when a point is inside, or will be by the end of the step. Contacts that last remember
+// where they hold on: what rests neither slides nor creeps.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "runtime/obstacles/contact_feel.h"
+#include "runtime/sim/contact/probes.h"
+#include "runtime/sim/model/plant.h"
+#include "runtime/sim/model/topology.h"
+
+namespace liana {
+
+struct ContactOptions {
+  ContactFeel ground;               ///< obstacles have their own
+  double stiffness_ratio = 1000;    ///< normal stiffness over m/Δt²
+  double least_stiffness = 5e3;     ///< N/m
+  double push_out_speed = 0.3;      ///< m/s, at which what is deep inside is moved out
+  bool remember_clearances = true;  ///< false: looks at every particle in every step, to the same effect
+};
+
+struct ContactReport {
+  size_t contacts = 0;         ///< springs made
+  size_t exempt = 0;           ///< roots, and particles at a plant's base that were inside when first seen
+  double max_penetration = 0;  ///< m, of the state looked at, without exempt particles
+};
+
+/// One per plant: it remembers which particles were made inside something, and the contacts of the present
+/// step.
+class Contacts {
+ public:
+  explicit Contacts(const ContactOptions& options = {}) : options_(options) {}
+
+  /// Appends the contact springs for the next step of the plant's time scheme, from its present state: of
+  /// what is inside, or will be if it goes on as it does.
+  ContactReport gather(const Plant& plant, const CollisionScene& scene, std::vector<WorldSpring>& springs);
+
+  /// After that step: appends springs for what is inside by more than `tolerance` (m) all the same and had
+  /// none, for taking the step again from `before`. Returns how many.
+  size_t gather_missed(const Plant& after, std::span<const Motion> before, const CollisionScene& scene,
+                       double tolerance, std::vector<WorldSpring>& springs);
+
+  /// The plant lost particles: what is known of the others goes with them.
+  void follow(const TopologyChange& change);
+
+  /// Only looks: the report of the present state, with no springs.
+  ContactReport measure(const Plant& plant, const CollisionScene& scene);
+
+ private:
+  struct Made {
+    uint64_t key;  // particle, probe, solid
+    Vec3 normal = Vec3::Zero();
+    Grip grip = {};
+    bool operator<(const Made& other) const { return key < other.key; }
+  };
+  void notice_new_particles(const Plant& plant, const CollisionScene& scene);
+  WorldSpring spring(const Plant& plant, const Motion& motion, const Gap& found, double to_surface,
+                     Grip& grip) const;
+
+  Clearances* clearances() { return options_.remember_clearances ? &clearances_ : nullptr; }
+
+  ContactOptions options_;
+  Probes probes_;
+  Clearances clearances_;
+  std::vector<uint8_t> exempt_;      // per particle
+  std::vector<Made> made_, before_;  // sorted: the contacts that have a spring in this step; in the last one
+};
+
+}  // namespace liana
