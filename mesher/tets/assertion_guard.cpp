@@ -3,24 +3,32 @@
 #include <csetjmp>
 #include <cstdio>
 #include <cstdlib>
+#include <mutex>
 
+#include "mesher/base/error.h"
+#include "mesher/tets/redirect_import.h"
+
+namespace liana {
 namespace {
-thread_local std::jmp_buf* assertion_exit = nullptr;
-}
 
-// Takes the place of glibc's for the whole program: the executable's symbols come before those of shared
-// libraries.
-extern "C" [[noreturn]] void __assert_fail(const char* assertion, const char* file, unsigned line,
-                                           const char* function) noexcept {
+thread_local std::jmp_buf* assertion_exit = nullptr;
+
+[[noreturn]] void leave_assertion(const char* assertion, const char* file, unsigned line,
+                                  const char* function) {
   if (assertion_exit) std::longjmp(*assertion_exit, 1);
   std::fprintf(stderr, "%s:%u: %s: Assertion `%s' failed.\n", file, line, function ? function : "",
                assertion);
   std::abort();
 }
 
-namespace liana {
+}  // namespace
 
-bool survives_assertions(const std::function<void()>& body) {
+bool survives_tetgen_assertions(const std::function<void()>& body) {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    require(redirect_import("libtet.so", "__assert_fail", reinterpret_cast<void*>(&leave_assertion)) > 0,
+            "TetGen's assertions are out of reach: it is not linked as the shared library libtet.so");
+  });
   std::jmp_buf here;
   if (setjmp(here) != 0) {
     assertion_exit = nullptr;

@@ -107,7 +107,7 @@ TetGenResult run_tetgen(std::span<const Vec3> positions, std::span<const Triangl
   behavior.tetrahedraperblock = 4 * block;
   behavior.brio_hilbert = 0;
   try {
-    if (!survives_assertions([&] { mesh_volume(behavior, polish == Polish::Points, in, out); })) {
+    if (!survives_tetgen_assertions([&] { mesh_volume(behavior, polish == Polish::Points, in, out); })) {
       result.failure = "TetGen failed an assertion of its own";
       return result;
     }

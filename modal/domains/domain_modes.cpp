@@ -1,7 +1,6 @@
 #include "modal/domains/domain_modes.h"
 
 #include <fmt/core.h>
-#include <malloc.h>
 
 #include <algorithm>
 #include <chrono>
@@ -150,11 +149,6 @@ AllModes solve_domains(const std::vector<Solid>& solids, const ElasticMaterial& 
   std::stable_sort(unique.begin(), unique.end(), [&](size_t a, size_t b) {
     return solids[a].surface->triangles.size() > solids[b].surface->triangles.size();
   });
-
-  // Keep what is freed: thousands of solutions take and give back the same megabyte, and asking the system
-  // for it each time costs a sixth of a small domain.
-  mallopt(M_TRIM_THRESHOLD, 64 << 20);
-  mallopt(M_MMAP_THRESHOLD, 64 << 20);
 
   AllModes all;
   all.domains.resize(solids.size());

@@ -1,4 +1,5 @@
 #include <fmt/core.h>
+#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -43,9 +44,18 @@ void complain_of_usage(const CLI::App& app, const CLI::ParseError& error, int ar
            "did you mean 'liana " + nearest + "'? liana --help lists all");
 }
 
+/// Keep what is freed: baking solves thousands of domains that take and give back the same megabyte, and
+/// asking the system for it each time costs a sixth of a small domain. The program's choice, not its
+/// libraries'.
+void keep_freed_memory() {
+  mallopt(M_TRIM_THRESHOLD, 64 << 20);
+  mallopt(M_MMAP_THRESHOLD, 64 << 20);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_memory();
   CLI::App app{"Liana makes plants move like real ones: what is baked is what moves.", "liana"};
   app.set_version_flag("--version", std::string("liana ") + LIANA_VERSION);
   app.require_subcommand(1);

@@ -12,7 +12,7 @@
 #include "mesher/base/nearest_word.h"
 #include "mesher/base/parallel.h"
 #include "mesher/base/stopwatch.h"
-#include "runtime/obstacles/shells.h"
+#include "runtime/obstacles/pieces.h"
 #include "runtime/picture/air_drawing.h"
 #include "runtime/sim/calibrate/plant_from_bake.h"
 #include "runtime/sim/model/state_hash.h"

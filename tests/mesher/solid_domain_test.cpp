@@ -233,7 +233,7 @@ TEST(SolidDomain, SectionsFollowABentTaperedTube) {
 }
 
 TEST(SolidDomain, SectionsOfAFlatBladeAreItsWidthAndThickness) {
-  const LeafShape shape{
+  const LeafCard shape{
       .length = 0.1, .width = 0.02, .along = 10, .across = 4, .bend = 0, .fold = 0, .pointed = false};
   SegmentedPlant plant = alone(make_leaf_card(shape));
   plant.domains[0].thickness = 5e-4;
@@ -343,7 +343,7 @@ TEST(SolidDomain, HoldsAPointedLeafByTheSamePieceHoweverCoarseItIs) {
 
 TEST(SolidDomain, FindsALeafsBaseThoughItsBladeTouchesTheTwig) {
   // The base edge is at the trunk's bark (x = 0.05), and the blade leans so that its side runs into the bark.
-  const LeafShape shape{.length = 0.06, .width = 0.04, .along = 10, .across = 4, .bend = 0, .fold = 0};
+  const LeafCard shape{.length = 0.06, .width = 0.04, .along = 10, .across = 4, .bend = 0, .fold = 0};
   const Affine3 place = Affine3(Eigen::Translation3d(0.05, 1, 0) * Eigen::AngleAxisd(-0.3, Vec3::UnitZ()));
   const SegmentedPlant plant = on_trunk(transformed(make_leaf_card(shape), place), DomainKind::Leaf);
   const SolidDomain solid = make_solid(plant, DomainId(1));

@@ -4,7 +4,7 @@
 #include "mesher/base/error.h"
 #include "mesher/geometry/weld.h"
 #include "mesher/solids/sections/beam_shape.h"
-#include "mesher/solids/solidify/attachment.h"
+#include "mesher/solids/solidify/parent_surface.h"
 #include "mesher/solids/solidify/solid_domain.h"
 #include "modal/domains/beam_mode.h"
 #include "modal/domains/domain_modes.h"
@@ -132,7 +132,7 @@ TEST(RepairRoutes, TheBeamOfABranchIsWithinThreePercentOfItsSolid) {
     // The beam of a good solid that failed later, and that of its bare triangles.
     const double sections =
         beam_modes(carried_to_ends(solid.centreline), solid.volume, {}, {}).frequencies[0];
-    const auto bare = beam_shape(plant.domains[0], Attachment(plant, DomainId(0)));
+    const auto bare = beam_shape(plant.domains[0], ParentSurface(plant, DomainId(0)));
     ASSERT_TRUE(bare);
     const double triangles = beam_modes(bare->centreline, 0, {}, {}).frequencies[0];
     std::printf("  beam of sections %+.2f %%, of triangles %+.2f %%\n", 100 * (sections / truth - 1),
@@ -154,9 +154,9 @@ double first_frequency(const SolidDomain& solid) {
 // What a beam can know of a sheet:
 // of flat sheets, 3 % as of branches; of folded ones rough, and said so.
 TEST(RepairRoutes, TheBeamOfASheetIsWithinThreePercentOrSaysThatItIsRough) {
-  LeafShape shape{
+  LeafCard shape{
       .length = 0.3, .width = 0.1, .along = 12, .across = 4, .bend = 0, .fold = 0, .pointed = false};
-  std::vector<LeafShape> leaves;
+  std::vector<LeafCard> leaves;
   for (const double width : {0.01, 0.03, 0.1, 0.2, 0.3}) leaves.push_back(shape), leaves.back().width = width;
   for (const double width : {0.01, 0.03, 0.1})
     leaves.push_back(shape), leaves.back().width = width, leaves.back().pointed = true;
@@ -164,7 +164,7 @@ TEST(RepairRoutes, TheBeamOfASheetIsWithinThreePercentOrSaysThatItIsRough) {
   leaves.push_back(shape), leaves.back().fold = 0.4;
   leaves.push_back({});
   int rough = 0;
-  for (const LeafShape& leaf : leaves) {
+  for (const LeafCard& leaf : leaves) {
     const SolidDomain solid = make_solid(alone(make_leaf_card(leaf), DomainKind::Leaf), DomainId(0));
     const Solid beam{&solid.surface, solid.is_root, {}, {}, solid.centreline, 0, true};
     Progress silent;

@@ -1,5 +1,6 @@
 #include "mesher/tets/tetrahedralize.h"
 
+#include <assert.h>
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +10,8 @@
 #include "mesher/tets/assertion_guard.h"
 #include "tests/support/solids/block_tets.h"
 #include "tests/support/solids/shapes.h"
+#define TETLIBRARY
+#include <tetgen.h>
 
 namespace liana {
 namespace {
@@ -199,15 +202,29 @@ TEST_F(BadSurface,
   says(box, "of its volume");
 }
 
-// TetGen's library finds the symbol by the dynamic linker, as here. Without the guard the test would abort.
-TEST(AssertionGuardDeathTest, TurnsAssertionsOfLibrariesIntoFailure) {
-  using AssertFail = void (*)(const char*, const char*, unsigned, const char*);
-  const auto fail = reinterpret_cast<AssertFail>(dlsym(RTLD_DEFAULT, "__assert_fail"));
-  ASSERT_NE(fail, nullptr);
-  EXPECT_FALSE(survives_assertions([&] { fail("n >= 3", "tetgen.cxx", 1, "removeedgebyflips"); }));
-  EXPECT_TRUE(survives_assertions([] {}));
-  EXPECT_THROW(survives_assertions([] { throw 3; }), int);
-  EXPECT_DEATH(fail("n >= 3", "elsewhere.cpp", 1, "f"), "n >= 3");
+// shortdistance() asserts that its edge has a length. Without the guard the test would abort.
+TEST(TetGenAssertions, BecomeFailures) {
+  tetgenmesh mesh;
+  double tip[3] = {0, 0, 1}, end[3] = {0, 0, 0};
+  EXPECT_FALSE(survives_tetgen_assertions([&] { mesh.shortdistance(tip, end, end); }));
+  EXPECT_TRUE(survives_tetgen_assertions([] {}));
+  EXPECT_THROW(survives_tetgen_assertions([] { throw 3; }), int);
+}
+
+void fail_assertion(const char* expression) {
+  __assert_fail(expression, "elsewhere.cpp", 1, "f");
+}
+
+TEST(TetGenAssertionsDeathTest, OfOthersAbortAsUsual) {
+  survives_tetgen_assertions([] {});
+  EXPECT_DEATH(fail_assertion("n >= 3"), "n >= 3");
+  EXPECT_DEATH(survives_tetgen_assertions([] { fail_assertion("n >= 4"); }), "n >= 4");
+}
+
+TEST(TetGenAssertions, LeaveTheSymbolToTheCLibrary) {
+  Dl_info found{};
+  ASSERT_NE(dladdr(dlsym(RTLD_DEFAULT, "__assert_fail"), &found), 0);
+  EXPECT_NE(std::string(found.dli_fname).find("libc.so"), std::string::npos) << found.dli_fname;
 }
 
 }  // namespace

@@ -8,13 +8,9 @@
 #include <string_view>
 #include <vector>
 
-namespace liana {
+#include "mesher/base/text.h"
 
-inline std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
+namespace liana {
 
 inline bool is_blank(std::string_view text) {
   return trimmed(text).empty();

@@ -23,7 +23,7 @@ double largest_finite(const std::vector<double>& values, uint32_t* at) {
 
 /// Distance along the surface from the root end: the mean of that from the root and that to the tip, whose
 /// level lines lean opposite ways. Negative where the root cannot be reached. The length comes back.
-double distance_along(const Mesh& mesh, const Attachment& attachment, std::vector<double>& along) {
+double distance_along(const Mesh& mesh, const ParentSurface& attachment, std::vector<double>& along) {
   const auto from = [&](uint32_t v) {
     std::vector<uint8_t> source(mesh.positions.size(), 0);
     source[v] = 1;
@@ -134,7 +134,7 @@ bool is_one_strand(const std::vector<Slice>& all, const std::vector<int>& used,
 
 }  // namespace
 
-std::optional<SolidDomain> beam_shape(const Domain& domain, const Attachment& attachment) {
+std::optional<SolidDomain> beam_shape(const Domain& domain, const ParentSurface& attachment) {
   const Mesh mesh = weld(domain.surface);
   if (mesh.triangles.empty()) return {};
   std::vector<double> along;

@@ -10,9 +10,9 @@
 #include "mesher/solids/repair/clean_shell.h"
 #include "mesher/solids/repair/mend.h"
 #include "mesher/solids/sections/slice.h"
-#include "mesher/solids/solidify/attachment.h"
 #include "mesher/solids/solidify/cap.h"
 #include "mesher/solids/solidify/geodesic.h"
+#include "mesher/solids/solidify/parent_surface.h"
 #include "mesher/solids/solidify/root_interface.h"
 
 namespace liana {
@@ -225,7 +225,7 @@ bool make_skin_field(const Mesh& shell, SkinField& field) {
   const Mesh& mesh = field.mesh;
   SegmentedPlant ground;
   ground.domains.emplace_back();
-  const Attachment attachment(ground, DomainId(0));
+  const ParentSurface attachment(ground, DomainId(0));
   const std::vector<uint8_t> is_root = root_end(mesh, field.adjacency, attachment);
   std::vector<uint8_t> source(mesh.positions.size(), 0);
   for (size_t i = 0; i < is_root.size(); ++i)

@@ -180,7 +180,7 @@ class Ladder {
   }
 
   const Domain& domain_;
-  Attachment attachment_;
+  ParentSurface attachment_;
   Attempt attempt_;  // of the last try
   std::optional<Error> failure_;
 };

@@ -130,7 +130,7 @@ std::vector<Vec3> long_axes(const Mesh& mesh, const std::vector<std::vector<uint
 }  // namespace
 
 size_t root_loop(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loops,
-                 const Attachment& attachment) {
+                 const ParentSurface& attachment) {
   size_t best = loops.size();
   double least = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < loops.size(); ++i) {
@@ -150,7 +150,7 @@ size_t root_loop(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loo
   return at_loop ? best : loops.size();
 }
 
-std::vector<uint8_t> root_end(const Mesh& mesh, const Adjacency& adjacency, const Attachment& attachment) {
+std::vector<uint8_t> root_end(const Mesh& mesh, const Adjacency& adjacency, const ParentSurface& attachment) {
   // The nearest vertex may lie anywhere around the foot (the parent's bark cuts through it); the point
   // farthest from the tip is the end itself.
   std::vector<double> from_near, from_tip;
@@ -201,7 +201,7 @@ std::vector<uint8_t> root_end(const Mesh& mesh, const Adjacency& adjacency, cons
 }
 
 SheetRoot sheet_root(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loops,
-                     const Attachment& attachment) {
+                     const ParentSurface& attachment) {
   std::vector<uint32_t> border;
   for (const std::vector<uint32_t>& loop : loops) border.insert(border.end(), loop.begin(), loop.end());
   // A blade may touch its twig anywhere; its base is at an end of its long axis and at the parent.

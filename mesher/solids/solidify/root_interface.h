@@ -4,17 +4,17 @@
 #include <vector>
 
 #include "mesher/geometry/mesh_checks.h"
-#include "mesher/solids/solidify/attachment.h"
+#include "mesher/solids/solidify/parent_surface.h"
 
 namespace liana {
 
 /// The border loop at the root of an open body, or loops.size() if the root end is closed.
 size_t root_loop(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loops,
-                 const Attachment& attachment);
+                 const ParentSurface& attachment);
 
 /// Marks the end of a closed, outward body that is nearest to its attachment: the faces around the point
 /// farthest from the other end that look away from it, up to the first crease.
-std::vector<uint8_t> root_end(const Mesh& mesh, const Adjacency& adjacency, const Attachment& attachment);
+std::vector<uint8_t> root_end(const Mesh& mesh, const Adjacency& adjacency, const ParentSurface& attachment);
 
 /// The root of a sheet.
 struct SheetRoot {
@@ -26,6 +26,6 @@ struct SheetRoot {
 /// The base of a sheet is the end of its long axis that is nearest to the attachment: the edges across it
 /// within 4 % of the sheet's length, or a point.
 SheetRoot sheet_root(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loops,
-                     const Attachment& attachment);
+                     const ParentSurface& attachment);
 
 }  // namespace liana

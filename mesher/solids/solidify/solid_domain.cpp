@@ -10,10 +10,10 @@
 #include "mesher/geometry/weld.h"
 #include "mesher/solids/repair/clean_shell.h"
 #include "mesher/solids/sections/centreline.h"
-#include "mesher/solids/solidify/attachment.h"
 #include "mesher/solids/solidify/cap.h"
 #include "mesher/solids/solidify/geodesic.h"
 #include "mesher/solids/solidify/grade.h"
+#include "mesher/solids/solidify/parent_surface.h"
 #include "mesher/solids/solidify/refine_sheet.h"
 #include "mesher/solids/solidify/root_interface.h"
 #include "mesher/solids/solidify/sheet.h"
@@ -41,7 +41,7 @@ std::vector<double> distance_from_root(const Mesh& mesh, const std::vector<uint8
 
 /// Closes the open ends, turns the surface outward and finds the root on it.
 Rooted body(const Mesh& shell, const Adjacency& adjacency, const std::vector<std::vector<uint32_t>>& loops,
-            const Attachment& attachment, const std::string& where) {
+            const ParentSurface& attachment, const std::string& where) {
   Rooted result;
   Mesh& mesh = result.surface.mesh;
   mesh = shell;
@@ -80,7 +80,7 @@ Rooted body(const Mesh& shell, const Adjacency& adjacency, const std::vector<std
 using Edges = std::set<std::pair<uint32_t, uint32_t>>;
 
 /// The edges at the root of the sheet; a pointed base is cut where its root ends.
-Edges root_edges(Mesh& mesh, std::vector<std::vector<uint32_t>> loops, const Attachment& attachment) {
+Edges root_edges(Mesh& mesh, std::vector<std::vector<uint32_t>> loops, const ParentSurface& attachment) {
   const SheetRoot found = sheet_root(mesh, loops, attachment);
   const bool pointed = found.point != Id<Mesh>::kNone;
   const Vec3 point = pointed ? mesh.positions[found.point] : Vec3::Zero();
@@ -107,7 +107,7 @@ Edges root_edges(Mesh& mesh, std::vector<std::vector<uint32_t>> loops, const Att
 
 /// Finds the root on the sheet's border, grades and refines the sheet and gives it its thickness.
 Rooted sheet(const Mesh& shell, const std::vector<std::vector<uint32_t>>& loops, double thickness,
-             const Attachment& attachment) {
+             const ParentSurface& attachment) {
   Rooted result;
   result.route = "sheet-extruded";
   MarkedSurface graded{shell, {}, {}};
@@ -163,7 +163,7 @@ Vec3 centre_of_root(const MarkedSurface& surface) {
 
 }  // namespace
 
-SolidDomain attempt_solid(const Domain& domain, const Mesh& surface, const Attachment& attachment,
+SolidDomain attempt_solid(const Domain& domain, const Mesh& surface, const ParentSurface& attachment,
                           Attempt& attempt) {
   const std::string where = fmt::format("domain '{}'", domain.name);
   const auto fail = [&](const std::string& reason, const std::string& hint) {

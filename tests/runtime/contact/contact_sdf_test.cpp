@@ -6,8 +6,8 @@
 #include "mesher/base/error.h"
 #include "mesher/base/random.h"
 #include "runtime/obstacles/box_mesh.h"
+#include "runtime/obstacles/pieces.h"
 #include "runtime/obstacles/sdf_obstacle.h"
-#include "runtime/obstacles/shells.h"
 
 namespace liana {
 namespace {

@@ -84,7 +84,7 @@ double polygon_second_moment(int sides, double diameter) {
   return sides * std::pow(r, 4) * std::sin(angle) * (2 + std::cos(angle)) / 24;
 }
 
-Mesh make_leaf_card(const LeafShape& shape) {
+Mesh make_leaf_card(const LeafCard& shape) {
   Mesh mesh;
   const auto columns = static_cast<uint32_t>(shape.across + 1);
   const TubeShape spine{.length = shape.length, .bend = shape.bend, .stations = {}};

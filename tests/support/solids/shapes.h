@@ -40,13 +40,13 @@ double polygon_second_moment(int sides, double diameter);  ///< m⁴, about any 
 /// One-sided sheet with a leaf's outline or (pointed = false) a rectangle: along +y, wide in x, its normal
 /// near +z. It is bent about x into an arc of the angle `bend` and folded by `fold` rad along the midrib
 /// (flat if both are 0).
-struct LeafShape {
+struct LeafCard {
   double length = 0.06, width = 0.04;
   int along = 6, across = 4;  ///< quads
   double bend = 0.3, fold = 0.2;
   bool pointed = true;
 };
-Mesh make_leaf_card(const LeafShape& shape);
+Mesh make_leaf_card(const LeafCard& shape);
 
 /// The six sides of a box as 12 triangles, from corner to corner + size.
 Mesh make_box(const Vec3& corner, const Vec3& size);

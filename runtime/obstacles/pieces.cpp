@@ -1,4 +1,4 @@
-#include "runtime/obstacles/shells.h"
+#include "runtime/obstacles/pieces.h"
 
 #include <algorithm>
 #include <map>

@@ -10,9 +10,9 @@
 namespace liana {
 
 /// What a domain is attached to: its parent's surface, or the ground for a trunk.
-class Attachment {
+class ParentSurface {
  public:
-  Attachment(const SegmentedPlant& plant, DomainId domain);
+  ParentSurface(const SegmentedPlant& plant, DomainId domain);
 
   /// m: distance to the parent's surface, negative inside the parent; the height for a trunk.
   double depth(const Vec3& point) const;

@@ -1,0 +1,12 @@
+# find_package(liana): liana::sim, liana::growth, liana::wind, liana::picture, ... (runtime/examples/README.md).
+include(CMakeFindDependencyMacro)
+find_dependency(Threads)
+find_dependency(Eigen3 NO_MODULE)
+find_dependency(fmt)
+find_dependency(nlohmann_json)
+find_dependency(tomlplusplus)
+find_dependency(TinyGLTF)
+find_dependency(embree 3)
+find_dependency(PkgConfig)
+pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+include(${CMAKE_CURRENT_LIST_DIR}/targets.cmake)

@@ -1,0 +1,66 @@
+// The field's words instead of our own: a reader who knows other engines shall know these names.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "tests/lint/source_files.h"
+
+namespace liana::lint {
+namespace {
+
+struct Word {
+  std::vector<std::string> ours;
+  const char* fields;
+};
+
+const std::vector<Word> kWords = {
+    {{"inhabitant", "inhabitants"}, "plant instance"},
+    {{"feel", "feels"}, "contact material"},
+    {{"elasticity"}, "restitution"},
+    {{"grip", "grips"}, "stick anchor"},
+    {{"near kin"}, "collision filter"},
+    {{"fallen part", "fallen parts"}, "detached part"},
+    {{"reseat", "reseats", "reseated", "reseating"}, "joint projection"},
+    {{"pluck", "plucks", "plucked", "plucking"}, "impulse"},
+    {{"handover", "handovers"}, "extend-add"},
+};
+
+// Old keys of scene files stay readable, and what is done to a real branch by hand is its own thing.
+const std::vector<std::string> kExempt = {"tests/lint/words_test.cpp"};
+
+/// "stepInhabitant_of(feel)" -> " step inhabitant of feel "
+std::string words_of(const std::string& line) {
+  std::string words = " ";
+  bool was_lower = false;
+  for (const char c : line) {
+    const auto letter = static_cast<unsigned char>(c);
+    const bool starts = std::isupper(letter) && was_lower;
+    if ((starts || !std::isalpha(letter)) && words.back() != ' ') words += ' ';
+    if (std::isalpha(letter)) words += static_cast<char>(std::tolower(letter));
+    was_lower = std::islower(letter);
+  }
+  return words + ' ';
+}
+
+TEST(Words, AreSplitAsNamesAre) {
+  EXPECT_EQ(words_of("stepInhabitant_of(feel)"), " step inhabitant of feel  ");
+}
+
+TEST(Words, AreTheFields) {
+  for (const std::string& file : source_files()) {
+    if (std::find(kExempt.begin(), kExempt.end(), file) != kExempt.end()) continue;
+    int number = 0;
+    for (const std::string& line : lines_of(file)) {
+      ++number;
+      const std::string words = words_of(line);
+      for (const Word& word : kWords)
+        for (const std::string& ours : word.ours)
+          if (words.find(" " + ours + " ") != std::string::npos)
+            ADD_FAILURE() << file << ":" << number << " say " << word.fields << ": " << line;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace liana::lint
