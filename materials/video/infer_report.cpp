@@ -20,7 +20,7 @@ Json mode_json(const MeasuredMode& mode) {
 
 Json motion_json(const PointModes& motion) {
   return {{"point", motion.point},
-          {"motion", motion.excitation == Excitation::Pluck ? "free decay" : "gusts"},
+          {"motion", motion.excitation == Excitation::FreeDecay ? "free decay" : "gusts"},
           {"first_frame", motion.first_frame},
           {"frames", motion.frames},
           {"bridged_frames", motion.bridged},
@@ -116,7 +116,7 @@ std::string infer_table(const InferResult& result) {
       text += fmt::format("{:<16}{:<20}{:>9.2f}  {:<6}{:>8.3f} +-{:<6.3f}{:>9.4f} +-{:<7.4f}{:>9.2f}  {}\n",
                           i ? "" : motion.point, i ? "" : on,
                           static_cast<double>(motion.frames) / result.frames_per_second,
-                          motion.excitation == Excitation::Pluck ? "decay" : "gusts", m.frequency,
+                          motion.excitation == Excitation::FreeDecay ? "decay" : "gusts", m.frequency,
                           kCoverage95 * m.frequency_sigma, m.damping_factor, kCoverage95 * m.damping_sigma,
                           m.amplitude, role_of(branch, i));
     }

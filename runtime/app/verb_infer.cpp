@@ -64,7 +64,7 @@ WindOptions wind_options(const std::string& text) {
 InferOptions infer_options(const InferArguments& arguments) {
   InferOptions options = arguments.options;
   options.wind = wind_options(arguments.wind);
-  options.motion.excitation = arguments.motion == "decay"   ? Excitation::Pluck
+  options.motion.excitation = arguments.motion == "decay"   ? Excitation::FreeDecay
                               : arguments.motion == "gusts" ? Excitation::Wind
                                                             : Excitation::Auto;
   if (!arguments.between.empty()) {
@@ -238,7 +238,7 @@ void add_infer_verb(CLI::App& app, int& exit_code) {
       "  liana infer tracks.csv --fps 30 --assign P0=level0:5.2 --assign P1=level1:2.1 --species palm -o "
       "mypalm.toml\n"
       "      points tracked elsewhere become a species: liana bake PLANT --species mypalm.toml\n\n"
-      "A plant that is plucked and let go in still air tells frequency and damping best; in gusts film a "
+      "A plant that is pulled and let go in still air tells frequency and damping best; in gusts film a "
       "minute or more.\n"
       "Exit code: 0 done, 1 bad input, 2 bad command line, 3 done but for points that are named, 130 stopped "
       "by Ctrl-C");

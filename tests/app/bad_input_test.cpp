@@ -232,7 +232,7 @@ TEST_F(BadInput, WindOfASceneIsRefusedWithItsLine) {
   }
 }
 
-TEST_F(BadInput, PluckIsRefusedWithItsLineOrTheNameItMeans) {
+TEST_F(BadInput, ImpulseIsRefusedWithItsLineOrTheNameItMeans) {
   small_bake();
   const std::string plant = "[[plant]]\nbake = \"small.bake\"\n[[pluck]]\n";
   write("fast.toml", plant + "domain = \"trunk\"\nvelocity = [101, 0, 0]\n");

@@ -62,12 +62,12 @@ class InferFromVideo : public testing::Test {
   ScratchFolder folder_;
 };
 
-TEST_F(InferFromVideo, PluckedPlantGivesBackItsMaterial) {
+TEST_F(InferFromVideo, PlantLetGoGivesBackItsMaterial) {
   std::vector<std::string> command = {"infer",     "plant.mp4",     "--plant",    "plant.bake",
                                       "--species", "apple",         "-o",         "inferred.toml",
                                       "--json",    "inferred.json", "--spectrum", "spectrum.csv",
                                       "--overlay", "overlay.mp4",   "--tracks",   "tracks.csv"};
-  for (const std::string& option : film(test::kFilmedScene + test::kPlucks, 10)) command.push_back(option);
+  for (const std::string& option : film(test::kFilmedScene + test::kImpulses, 10)) command.push_back(option);
   run(command);
   expect_known_material(0.03, 0.20);
   const auto json = nlohmann::json::parse(read_file(folder_ / "inferred.json"));
@@ -128,11 +128,11 @@ TEST(InferProgram, RefusesTracksThatMakeNoSense) {
   EXPECT_FALSE(std::filesystem::exists(folder / "mine.toml"));
 }
 
-TEST(PluckedScene, UnknownBranchOrPlantIsRefused) {
+TEST(SceneImpulses, UnknownBranchOrPlantIsRefused) {
   const ScratchFolder folder;
   write_bake(test::filmed_plant(), folder / "plant.bake");
-  const auto said = [&](const std::string& pluck) {
-    write_file(folder / "scene.toml", test::kFilmedScene + "[[pluck]]\n" + pluck);
+  const auto said = [&](const std::string& impulse) {
+    write_file(folder / "scene.toml", test::kFilmedScene + "[[pluck]]\n" + impulse);
     return run_liana({"simulate", "scene.toml", "--seconds", "0"}, folder.path()).err;
   };
   EXPECT_TRUE(says(said("domain = \"lefft\"\nvelocity = [1, 0, 0]\n"), "did you mean 'left'"));

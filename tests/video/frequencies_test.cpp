@@ -42,7 +42,7 @@ TEST(Decay, NoiselessSwingsAreRecovered) {
   const PointModes found =
       modes_of(test::decaying_path({.noise = 1e-6, .swings = {{1.1, 0.04, 20}, {2.7, 0.07, 6}}}, random), 30);
   ASSERT_GE(found.modes.size(), 2u);
-  EXPECT_EQ(found.excitation, Excitation::Pluck);
+  EXPECT_EQ(found.excitation, Excitation::FreeDecay);
   EXPECT_NEAR(found.modes[0].frequency, 1.1, 1e-5);
   EXPECT_NEAR(found.modes[0].damping_factor, 0.04, 1e-5);
   EXPECT_NEAR(found.modes[1].frequency, 2.7, 1e-4);

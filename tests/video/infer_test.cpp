@@ -30,7 +30,7 @@ SpeciesFile base() {
 }
 
 /// Two branches on a trunk: every point sees the trunk's swing and its own.
-PointTracks plucked(uint64_t seed, double noise = 0.2) {
+PointTracks let_go(uint64_t seed, double noise = 0.2) {
   PointTracks tracks = test::tracks_of({}, 30);
   Random random(seed, "plucked");
   for (size_t i = 0; i < kBranches.size(); ++i) {
@@ -62,7 +62,7 @@ std::string complaint(const PointTracks& tracks, const InferOptions& options) {
 }
 
 TEST(Infer, BranchesAreToldFromTheTrunkTheyShare) {
-  const InferResult result = infer(plucked(1), base().law, nullptr, two_branches());
+  const InferResult result = infer(let_go(1), base().law, nullptr, two_branches());
   ASSERT_TRUE(result.tree.trunk.has_value());
   EXPECT_FALSE(result.tree.trunk_was_tracked);
   EXPECT_FALSE(result.tree.wind.has_value());
@@ -77,7 +77,7 @@ TEST(Infer, BranchesAreToldFromTheTrunkTheyShare) {
 }
 
 TEST(Infer, FittedConstantMinimisesTheTwoNorm) {
-  const FittedGroup group = infer(plucked(2), base().law, nullptr, two_branches()).groups.at(1);
+  const FittedGroup group = infer(let_go(2), base().law, nullptr, two_branches()).groups.at(1);
   const auto norm = [&](double c1) {
     double squares = 0;
     for (const FittedBranch& b : group.branches)
@@ -92,7 +92,7 @@ TEST(Infer, FittedConstantMinimisesTheTwoNorm) {
 TEST(Infer, IntervalsCoverTheTruthInNineOfTenRecords) {
   int trials = 0, covered = 0;
   for (uint64_t seed = 0; seed < 40; ++seed) {
-    const InferResult result = infer(plucked(seed, 0.5), base().law, nullptr, two_branches());
+    const InferResult result = infer(let_go(seed, 0.5), base().law, nullptr, two_branches());
     for (const BranchMotion& branch : result.tree.branches) {
       const Branch& truth = kBranches[branch.target.length == 1.2 ? 0 : 1];
       ASSERT_TRUE(branch.own.has_value());
@@ -109,7 +109,7 @@ TEST(Infer, IntervalsCoverTheTruthInNineOfTenRecords) {
 TEST(Infer, WindAndAShakenCameraAreTakenOut) {
   // As the palm of [Wang17]: all points share the wind's 0.15 Hz, stronger than anything else, and a shaking
   // hand.
-  PointTracks tracks = plucked(3);
+  PointTracks tracks = let_go(3);
   tracks.points.push_back({"rock", std::vector<Vec2>(tracks.frames(), Vec2(20, 400))});
   Random random(3, "hand");
   for (size_t n = 0; n < tracks.frames(); ++n) {
@@ -151,7 +151,7 @@ TEST(Infer, LowestSharedFrequencyIsTheWindsWhenAHigherOneIsSharedToo) {
 TEST(Infer, WrittenSpeciesIsReadBackWithTheFittedLaw) {
   const ScratchFolder folder;
   const SpeciesFile species =
-      inferred_species(base(), infer(plucked(5), base().law, nullptr, two_branches()), "mine");
+      inferred_species(base(), infer(let_go(5), base().law, nullptr, two_branches()), "mine");
   write_file(folder / "mine.toml", species_toml(species, "Two lines\nof comment"));
   const SpeciesFile back = read_species_file(folder / "mine.toml");
   EXPECT_EQ(back.law.species, "mine");
@@ -194,7 +194,7 @@ TEST(SpeciesWriter, EveryPresetReadsBackTheSame) {
 }
 
 TEST(Infer, ReportsAreComplete) {
-  const InferResult result = infer(plucked(6), base().law, nullptr, two_branches());
+  const InferResult result = infer(let_go(6), base().law, nullptr, two_branches());
   const auto json = nlohmann::json::parse(infer_json(result));
   for (const char* key : {"source", "frames_per_second", "wind", "trunk", "points", "groups", "notes"})
     EXPECT_TRUE(json.contains(key)) << key;
@@ -204,7 +204,7 @@ TEST(Infer, ReportsAreComplete) {
 }
 
 TEST(InferBadInput, TooShortSaysHowLongIsNeeded) {
-  PointTracks tracks = plucked(7);
+  PointTracks tracks = let_go(7);
   for (PointTrack& track : tracks.points) track.path.resize(60);
   InferOptions options = two_branches();
   options.motion.low = 0.3;
@@ -215,7 +215,7 @@ TEST(InferBadInput, TooShortSaysHowLongIsNeeded) {
 }
 
 TEST(InferBadInput, VanishingPointIsNamedAndTheOthersAreUsed) {
-  PointTracks tracks = plucked(8);
+  PointTracks tracks = let_go(8);
   for (size_t n = 20; n < tracks.frames(); ++n)
     if (n % 30 > 5) tracks.points[1].path[n].setConstant(std::nan(""));
   const InferResult result = infer(tracks, base().law, nullptr, two_branches());
@@ -225,11 +225,11 @@ TEST(InferBadInput, VanishingPointIsNamedAndTheOthersAreUsed) {
 }
 
 TEST(InferBadInput, NothingMovesOrTheAssignmentMakesNoSense) {
-  PointTracks still = plucked(9);
+  PointTracks still = let_go(9);
   for (PointTrack& track : still.points)
     for (Vec2& p : track.path) p = Vec2(3, 4);
   EXPECT_NE(complaint(still, two_branches()).find("does not move"), std::string::npos);
-  const PointTracks tracks = plucked(9);
+  const PointTracks tracks = let_go(9);
   const auto said = [&](const std::string& point, const std::string& target) {
     InferOptions options;
     options.assignments = {{point, target}};

@@ -92,7 +92,7 @@ TEST(TrackVideo, ShakenCameraIsTakenOutAndTheSwingRemains) {
   }
   EXPECT_LT(worst, 1);  // pixel: a tenth a frame that adds up, and the background's own tenth
   const PointModes motion = point_modes(video.steady, track, {});
-  EXPECT_EQ(motion.excitation, Excitation::Pluck);
+  EXPECT_EQ(motion.excitation, Excitation::FreeDecay);
   EXPECT_NEAR(motion.modes.front().frequency, kFrequency, 0.01 * kFrequency);
   EXPECT_NEAR(motion.modes.front().damping_factor, kDamping, 0.1 * kDamping);
 }

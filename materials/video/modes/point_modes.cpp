@@ -131,14 +131,14 @@ PointModes point_modes(const PointTracks& tracks, const PointTrack& track, const
       const std::vector<Vec2> rest_fast(fast.begin() + static_cast<std::ptrdiff_t>(start), fast.end());
       const Vec2 direction = main_direction(rest_fast).direction;
       decay = fit_decay(projected(rest, direction), dt, {result.lowest, result.highest});
-    } else if (options.excitation == Excitation::Pluck) {
+    } else if (options.excitation == Excitation::FreeDecay) {
       fail(tracks, track, "is deflected most at the end of the record: nothing of its decay is left",
            "give the seconds in which it swings freely: --from and --to");
     }
   }
   result.explained = decay.explained;
-  if (options.excitation == Excitation::Pluck || is_decay(decay, main.signal, start)) {
-    result.excitation = Excitation::Pluck;
+  if (options.excitation == Excitation::FreeDecay || is_decay(decay, main.signal, start)) {
+    result.excitation = Excitation::FreeDecay;
     result.modes = decay.modes;
     part.path.erase(part.path.begin(), part.path.begin() + static_cast<std::ptrdiff_t>(start));
     part.first += start;
@@ -162,7 +162,7 @@ PointModes point_modes(const PointTracks& tracks, const PointTrack& track, const
     fail(tracks, track,
          fmt::format("shows no frequency between {:.2f} and {:.2f} Hz that stands out", result.lowest,
                      result.highest),
-         "film longer or closer, pluck the branch, or widen --between");
+         "film longer or closer, pull the branch and let go, or widen --between");
   return result;
 }
 

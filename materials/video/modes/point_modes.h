@@ -10,9 +10,8 @@
 
 namespace liana {
 
-/// What set the plant in motion. Pluck: it was let go and decays freely. Wind: it is pushed about all the
-/// time.
-enum class Excitation { Auto, Pluck, Wind };
+/// What set the plant in motion. FreeDecay: it was let go. Wind: it is pushed about all the time.
+enum class Excitation { Auto, FreeDecay, Wind };
 
 struct MotionOptions {
   double low = 0;   ///< Hz, lowest frequency asked for; 0: three swings of the record
@@ -24,7 +23,7 @@ struct MotionOptions {
 
 struct PointModes {
   std::string point;
-  Excitation excitation = Excitation::Auto;  ///< Pluck or Wind: as which the motion was read
+  Excitation excitation = Excitation::Auto;  ///< FreeDecay or Wind: as which the motion was read
   size_t first_frame = 0, frames = 0;        ///< of the record, the part that was used
   size_t bridged = 0;                        ///< of them not seen
   Vec2 direction = Vec2::UnitX();            ///< of the main motion in the picture

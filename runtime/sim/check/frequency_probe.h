@@ -1,4 +1,4 @@
-// Pluck one branch, let the simulator move it, and measure how it swings.
+// Push one branch off, let the simulator move it, and measure how it swings.
 #pragma once
 
 #include "runtime/sim/calibrate/held_chain.h"

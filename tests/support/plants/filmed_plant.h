@@ -19,7 +19,7 @@ inline const std::string kFilmedScene =
     "[[plant]]\nbake = \"plant.bake\"\n";
 
 /// The trunk and every branch are struck after one second and let go.
-inline const std::string kPlucks =
+inline const std::string kImpulses =
     "[[pluck]]\ndomain = \"trunk\"\ntime = 1\nvelocity = [0.4, 0, 0]\n"
     "[[pluck]]\ndomain = \"left\"\ntime = 1\nvelocity = [0.6, 1.0, 0]\n"
     "[[pluck]]\ndomain = \"right\"\ntime = 1\nvelocity = [0.6, -1.0, 0]\n"
