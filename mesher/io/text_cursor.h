@@ -5,8 +5,6 @@
 #include <optional>
 #include <string_view>
 
-#include "mesher/base/text.h"
-
 namespace liana {
 
 /// The next line without its end (LF or CRLF); false at the end of the text.
@@ -30,6 +28,14 @@ class LineCursor {
   std::string_view rest_;
   size_t number_ = 0;
 };
+
+constexpr std::string_view kBlanks = " \t\v\f\r";
+
+inline std::string_view trimmed(std::string_view text) {
+  const size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
 
 /// Takes the first word off a line; empty when there is none.
 inline std::string_view take_word(std::string_view& line) {

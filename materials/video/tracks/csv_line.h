@@ -8,9 +8,13 @@
 #include <string_view>
 #include <vector>
 
-#include "mesher/base/text.h"
-
 namespace liana {
+
+inline std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
 
 inline bool is_blank(std::string_view text) {
   return trimmed(text).empty();
