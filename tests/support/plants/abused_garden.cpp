@@ -84,8 +84,8 @@ void AbusedGarden::act(Victim& v, int step) {
       break;
     case Abuse::Shake:
     case Abuse::Pinch: {  // a pinch holds two points with springs of very different stiffness
-      const size_t grips = v.abuse == Abuse::Shake ? 1 : 2;
-      for (size_t g = 0; g < grips; ++g) {
+      const size_t holds = v.abuse == Abuse::Shake ? 1 : 2;
+      for (size_t g = 0; g < holds; ++g) {
         const size_t k = g == 0 ? n - 1 : n / 2;
         v.springs.push_back({.particle = ParticleId(k),
                              .target = v.plant.motion[k].position + 0.5 * random_vector(v.random),
