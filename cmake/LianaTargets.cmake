@@ -8,10 +8,11 @@
 #   OWN_FLAGS  its vendors add compiler flags, so it cannot share the precompiled header
 #   HEADLESS  part of the simulator: neither it nor what it links may link OpenGL, windows, CGAL or TetGen;
 #              installed for others
+#   STRICT    -Wshadow -Wconversion, and warnings are errors. For every target that is clean; new ones are.
 #   TOGETHER  compiles several files as one, so that what they all include is read once: names in their anonymous
 #              namespaces must differ then. For what is not edited every day.
 function(liana_library name)
-  cmake_parse_arguments(ARG "OWN_FLAGS;TOGETHER;HEADLESS" "" "FOLDERS;LINKS;VENDOR" ${ARGN})
+  cmake_parse_arguments(ARG "OWN_FLAGS;TOGETHER;HEADLESS;STRICT" "" "FOLDERS;LINKS;VENDOR" ${ARGN})
   get_property(rank GLOBAL PROPERTY liana_next_rank)
   if(NOT rank)
     set(rank 1)
@@ -40,6 +41,9 @@ function(liana_library name)
     target_link_libraries(${name} PUBLIC ${ARG_LINKS} PRIVATE liana_options ${ARG_VENDOR})
     if(NOT ARG_OWN_FLAGS)
       target_precompile_headers(${name} REUSE_FROM liana_headers)
+    endif()
+    if(ARG_STRICT)
+      target_compile_options(${name} PRIVATE -Wshadow -Wconversion $<$<BOOL:${LIANA_WERROR}>:-Werror>)
     endif()
     if(ARG_TOGETHER)
       set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)

@@ -12,8 +12,8 @@ struct Error : std::runtime_error {
   Kind kind;
   std::string hint;  ///< the next thing to do or type; may be empty
 
-  Error(Kind kind, const std::string& what, std::string hint = {})
-      : std::runtime_error(what), kind(kind), hint(std::move(hint)) {}
+  Error(Kind of_kind, const std::string& what, std::string what_to_do = {})
+      : std::runtime_error(what), kind(of_kind), hint(std::move(what_to_do)) {}
 };
 
 /// A condition that only a bug of ours can break.
