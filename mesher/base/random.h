@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "mesher/base/fixed_math.h"
 #include "mesher/base/types.h"
 
 namespace liana {
@@ -35,8 +36,8 @@ class Random {
 
   /// Mean 0, variance 1: Box-Muller, one of the pair.
   double normal() {
-    const double radius = std::sqrt(-2 * std::log((next() + 1.0) * 0x1p-32));
-    return radius * std::cos(2 * kPi * uniform());
+    const double radius = std::sqrt(-2 * fixed::log((next() + 1.0) * 0x1p-32));
+    return radius * fixed::cos(2 * kPi * uniform());
   }
 
  private:

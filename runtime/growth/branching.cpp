@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "runtime/sim/model/rotation.h"
+
 namespace liana {
 
 std::vector<Bud> breaking_buds(const Shoot& shoot, int level, const Vec3& node, const Vec3& forward,
@@ -16,7 +18,7 @@ std::vector<Bud> breaking_buds(const Shoot& shoot, int level, const Vec3& node, 
     const double off = parameters.variance * kPi / 2 * random.uniform(-1, 1);
     if (!breaks) continue;
     const double angle = side * (parameters.angle + off);
-    const Vec3 direction = (Eigen::AngleAxisd(angle, outward) * forward).normalized();
+    const Vec3 direction = (rotation_about(outward, angle) * forward).normalized();
     if (crowding.crowded(node + 1.5 * parameters.room * direction, parameters.room, BranchId())) continue;
     buds.push_back(
         {direction, std::clamp(shoot.course + angle, -1.4, 1.4), shoot.tip_radius * parameters.falloff});

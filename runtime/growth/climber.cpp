@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include "mesher/base/error.h"
+#include "mesher/base/fixed_math.h"
 #include "runtime/growth/branching.h"
 #include "runtime/growth/light.h"
 #include "runtime/growth/thickening.h"
 #include "runtime/sim/model/rod_section.h"
+#include "runtime/sim/model/rotation.h"
 #include "runtime/sim/step/joints.h"
 
 namespace liana {
@@ -119,7 +121,7 @@ void Climber::germinate(Plant& plant, const Surroundings& around) {
     const Shoot shoot{BranchId(), parameters_.tip_radius, place * parameters_.fan, parameters_.longest_shoot};
     const Vec3 beside = 6 * parameters_.tip_radius * (i - (count - 1) / 2.0) * normal.cross(up);
     start_shoot(plant, {ParticleId(), seed_ - beside}, BranchId(),
-                Eigen::AngleAxisd(shoot.course, normal) * direction, shoot, around);
+                rotation_about(normal, shoot.course) * direction, shoot, around);
     finish_node(plant, shoots_.size() - 1, around);  // full-grown from the start
   }
 }
@@ -309,7 +311,7 @@ void Climber::keep_loads(Plant& plant, double dt) {
     return BodyPose{.position = m.position, .orientation = m.orientation};
   };
   kept_.resize(plant.particles.size(), {Vec3::Zero(), Vec3::Zero()});
-  const double left = std::exp(-dt / kForget);
+  const double left = fixed::exp(-dt / kForget);
   uncarried_weight(plant, parameters_.gravity, uncarried_now_);
   for (size_t i = 0; i < plant.particles.size(); ++i) {
     Particle& particle = plant.particles[i];
@@ -364,9 +366,9 @@ void Climber::recalibrate_changed(Plant& plant, double dt, GrowthReport& report)
     now.seen_length = now.length, now.seen_base = now.base;
     // A new node lengthens a shoot at once: that, too, is made good in steps.
     double longer =
-        now.length == last.seen_length ? 0 : std::max(0.0, std::log(now.length / last.seen_length));
+        now.length == last.seen_length ? 0 : std::max(0.0, fixed::log(now.length / last.seen_length));
     if (branch.kind != DomainKind::Leaf) longer = std::min(longer, parameters_.elongation * dt / now.length);
-    const double stiffer = now.base == last.seen_base ? 0 : std::abs(std::log(now.base / last.seen_base));
+    const double stiffer = now.base == last.seen_base ? 0 : std::abs(fixed::log(now.base / last.seen_base));
     const double grown = kStiffnessByLength * longer + stiffer;
     last.seen_length = now.length, last.seen_base = now.base;
     const bool its_turn = (i < first_turn ? i + count : i) - first_turn < turns;
@@ -386,7 +388,7 @@ void Climber::recalibrate_changed(Plant& plant, double dt, GrowthReport& report)
     const double most = last.length == 0 ? HUGE_VAL : std::min(unseen, kMostAtOnce) + grown;
     const double before = branch.stiffness_scale;
     if (!recalibrate(plant, BranchId(i), carried, chain_, most)) ++report.out_of_range;
-    now.on_its_way = std::abs(std::log(branch.stiffness_scale / before)) > 0.999 * most;
+    now.on_its_way = std::abs(fixed::log(branch.stiffness_scale / before)) > 0.999 * most;
     last = now;
     ++report.recalibrated;
   }

@@ -6,6 +6,7 @@
 #include "runtime/growth/segments.h"
 #include "runtime/growth/tropisms.h"
 #include "runtime/sim/model/rod_section.h"
+#include "runtime/sim/model/rotation.h"
 
 namespace liana {
 namespace {
@@ -43,7 +44,7 @@ BranchId Leaves::sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3&
   const Vec3 forward = forward_of(plant, node);
   Vec3 side = outward.cross(forward);
   side = side.norm() > 1e-6 ? side.normalized() : forward.unitOrthogonal();
-  side = Eigen::AngleAxisd(p.divergence * shoot.leaves++, forward) * side;
+  side = rotation_about(forward, p.divergence * shoot.leaves++) * side;
   Vec3 vary;  // one after the other: compilers evaluate arguments in the order they like
   for (const int axis : {2, 1, 0}) vary[axis] = p.variation * random.normal();
   // Sideways from the stem, away from the wall, the tip hanging a little.

@@ -6,6 +6,7 @@
 #include "runtime/sim/calibrate/equilibrium.h"
 #include "runtime/sim/model/centreline.h"
 #include "runtime/sim/model/rod_section.h"
+#include "runtime/sim/model/rotation.h"
 
 namespace liana {
 namespace {
@@ -139,7 +140,7 @@ void append_chain(Plant& plant, const Bake& bake, DomainId id, double spacing) {
 }
 
 void place(Plant& plant, const Vec3& position, double yaw) {
-  const Quat turn(Eigen::AngleAxisd(yaw, Vec3::UnitY()));
+  const Quat turn = rotation_about(Vec3::UnitY(), yaw);
   for (size_t i = 0; i < plant.particles.size(); ++i) {
     Motion& m = plant.motion[i];
     m.position = turn * m.position + position;
