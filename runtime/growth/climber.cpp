@@ -5,6 +5,7 @@
 
 #include "mesher/base/error.h"
 #include "mesher/base/fixed_math.h"
+#include "mesher/base/random.h"
 #include "runtime/growth/branching.h"
 #include "runtime/growth/light.h"
 #include "runtime/growth/thickening.h"
@@ -22,6 +23,8 @@ constexpr double kUnseenJump = 0.01;       // of a tip's speed, that a step's ca
 constexpr double kMostAtOnce = 0.01;      // of a stiffness, beyond what its growth changes it by in that step
 constexpr double kStiffnessByLength = 3;  // exponent, about: of a branch that keeps to its law while it grows
 constexpr double kForget = 1;             // growth s, in which a bent joint gets used to its new stiffness
+constexpr uint64_t kTurnsToHold = 64;     // steps of growth in which every stem is tried for a hold once
+constexpr uint64_t kTurnsToSettle = 100;  // calls in which every branch is calibrated finely once
 constexpr double kLeafStrand = 0.35;      // of the petiole's radius: what a leaf adds to the stems below
 
 /// Away from the support; away from the stem's underside where there is none.
@@ -42,9 +45,7 @@ Climber::Climber(const ClimberParameters& parameters, const SpeciesLaw& law, con
     : parameters_(parameters),
       law_(law),
       seed_(seed_position),
-      wander_(random_seed, "growth/wander"),
-      branching_(random_seed, "growth/branching"),
-      leafing_(random_seed, "growth/leaves"),
+      random_seed_(random_seed),
       leaves_(parameters.leaves),
       anchors_(parameters.anchors, parameters.tip_radius),
       crowding_(std::max(parameters.branching.room, 0.02)) {
@@ -93,11 +94,16 @@ GrowthReport Climber::grow(Plant& plant, std::span<const SdfObstacle* const> obs
 }
 
 void Climber::grow_once(Plant& plant, const Surroundings& around, double dt) {
+  ++steps_;
   for (size_t i = 0, count = shoots_.size(); i < count; ++i)
     if (shoots_[i].lost_tip) break_bud_below_cut(plant, i, around);
-  for (size_t i = 0; i < shoots_.size(); ++i)  // grows while it goes on
-    if (shoots_[i].growing && grow_tip(plant, shoots_[i], parameters_, around, wander_, dt))
+  for (size_t i = 0; i < shoots_.size(); ++i) {  // grows while it goes on
+    Shoot& shoot = shoots_[i];
+    if (!shoot.growing) continue;
+    const Draws turns(random_seed_, plant.branches[shoot.branch.index()].lineage, "growth/wander");
+    if (grow_tip(plant, shoot, parameters_, around, turns.normal(shoot.steps++), dt))
       finish_node(plant, i, around);
+  }
   leaves_.grow(plant, around, dt, law_);
   hold_on_again(plant, around);
   thicken(
@@ -120,7 +126,9 @@ void Climber::germinate(Plant& plant, const Surroundings& around) {
     const double place = count > 1 ? 2.0 * i / (count - 1) - 1 : 0;  // -1 … 1
     const Shoot shoot{BranchId(), parameters_.tip_radius, place * parameters_.fan, parameters_.longest_shoot};
     const Vec3 beside = 6 * parameters_.tip_radius * (i - (count - 1) / 2.0) * normal.cross(up);
-    start_shoot(plant, {ParticleId(), seed_ - beside}, BranchId(),
+    const LineageId lineage =
+        child_lineage(plant_lineage(plant.name, random_seed_), LineageKind::Branch, static_cast<uint64_t>(i));
+    start_shoot(plant, {ParticleId(), seed_ - beside}, BranchId(), lineage,
                 rotation_about(normal, shoot.course) * direction, shoot, around);
     finish_node(plant, shoots_.size() - 1, around);  // full-grown from the start
   }
@@ -132,9 +140,10 @@ bool Climber::may_grow(const Plant& plant, int level) const {
   return plant.particles.size() < parameters_.max_particles * (1 - 0.15 * std::min(level, 3));
 }
 
-void Climber::start_shoot(Plant& plant, const Attachment& at, BranchId parent, const Vec3& direction,
-                          Shoot shoot, const Surroundings& around) {
+void Climber::start_shoot(Plant& plant, const Attachment& at, BranchId parent, LineageId lineage,
+                          const Vec3& direction, Shoot shoot, const Surroundings& around) {
   Branch branch;
+  branch.lineage = lineage;
   branch.parent = parent;
   branch.level = parent.valid() ? plant.branches[parent.index()].level + 1 : 0;
   branch.group = "level" + std::to_string(branch.level);
@@ -208,17 +217,18 @@ void Climber::finish_node(Plant& plant, size_t index, const Surroundings& around
   if ((shoot.since_leaf += parameters_.segment_length) >= parameters_.leaves.step &&
       plant.particles.size() < parameters_.max_particles) {
     const BranchId leaf =
-        leaves_.sprout(plant, shoot, node, support ? support->normal : outward, around, law_, leafing_);
+        leaves_.sprout(plant, shoot, node, support ? support->normal : outward, around, law_, random_seed_);
     plant.branches[leaf.index()].strength = parameters_.leaf_strength;
     shoot.since_leaf = 0;
     young_radius_.push_back(0);
     joint_length_.push_back(0);
   }
   const int level = plant.branches[branch.index()].level;
-  for (const Bud& bud :
-       breaking_buds(shoot, level, head, forward, outward, parameters_.branching, crowding_, branching_))
+  const LineageId name = plant.lineage_of(node);
+  for (const Bud& bud : breaking_buds(shoot, level, head, forward, outward, parameters_.branching, crowding_,
+                                      {random_seed_, name, "growth/buds"}))
     if (may_grow(plant, level + 2) && head.y() > around.ground_height + parameters_.segment_length)
-      start_shoot(plant, here, branch, bud.direction,
+      start_shoot(plant, here, branch, child_lineage(name, LineageKind::Branch, bud.ordinal), bud.direction,
                   {BranchId(), bud.tip_radius, bud.course, shoot.longest / 2, shoot.light}, around);
 
   shoot.growing = plant.branches[branch.index()].length < shoot.longest &&
@@ -268,21 +278,23 @@ void Climber::break_bud_below_cut(Plant& plant, size_t index, const Surroundings
   sure.max_laterals = 1;
   const Shoot parent = shoot;  // start_shoot() moves the shoots
   const int level = branch.level;
+  const LineageId name = plant.lineage_of(node);
   for (const Bud& bud :
        breaking_buds(parent, level, head, forward, outward_of(support, forward, around.to_sun), sure,
-                     crowding_, branching_))
+                     crowding_, {random_seed_, name, "growth/bud below a cut"}))
     if (may_grow(plant, level + 2))
       start_shoot(plant, {node, Vec3(0, plant.particles[node.index()].half_length, 0)}, parent.branch,
-                  bud.direction, {BranchId(), bud.tip_radius, bud.course, parent.longest / 2, parent.light},
-                  around);
+                  child_lineage(name, LineageKind::Branch, parameters_.branching.max_laterals), bud.direction,
+                  {BranchId(), bud.tip_radius, bud.course, parent.longest / 2, parent.light}, around);
 }
 
-// A few particles a step are looked at again: a stem that was blown against the wall takes root there.
+// A few particles a step are looked at again: a stem that was blown against the wall takes root there. Whose
+// turn it is depends on the particle's lineage and on the step, not on what else grows.
 void Climber::hold_on_again(Plant& plant, const Surroundings& around) {
-  for (size_t looked = 0; looked < plant.particles.size() / 64 + 1; ++looked) {
-    next_hold_ = (next_hold_ + 1) % plant.particles.size();
-    const ParticleId id(next_hold_);
-    const Particle& particle = plant.particles[next_hold_];
+  for (size_t i = 0; i < plant.particles.size(); ++i) {
+    const ParticleId id(i);
+    if ((plant.lineage[i].value + steps_) % kTurnsToHold != 0) continue;
+    const Particle& particle = plant.particles[i];
     const bool stem = plant.branches[particle.branch.index()].kind == DomainKind::Branch;
     const bool grown = 2 * particle.half_length >= parameters_.segment_length * (1 - 1e-9);
     if (stem && grown && particle.parent.valid()) anchors_.attach(plant, id, around);
@@ -349,9 +361,8 @@ void Climber::recalibrate_changed(Plant& plant, double dt, GrowthReport& report)
   }
   const std::vector<double> carried = carried_masses(plant);
   calibrated_.resize(plant.branches.size());
-  const size_t turns = plant.branches.size() / 100 + 1, count = plant.branches.size();
-  const size_t first_turn = next_settled_ % count;
-  found_.assign(count, {-1, 0});
+  ++calls_;
+  found_.assign(plant.branches.size(), {-1, 0});
   for (size_t i = 0; i < plant.particles.size(); ++i) {
     const Particle& particle = plant.particles[i];
     Found& found = found_[particle.branch.index()];
@@ -371,7 +382,7 @@ void Climber::recalibrate_changed(Plant& plant, double dt, GrowthReport& report)
     const double stiffer = now.base == last.seen_base ? 0 : std::abs(fixed::log(now.base / last.seen_base));
     const double grown = kStiffnessByLength * longer + stiffer;
     last.seen_length = now.length, last.seen_base = now.base;
-    const bool its_turn = (i < first_turn ? i + count : i) - first_turn < turns;
+    const bool its_turn = (branch.lineage.value + calls_) % kTurnsToSettle == 0;
     const double by = its_turn ? parameters_.settled : parameters_.recalibration;
     if (!last.differs(now, by)) continue;
     // A relative change of a swinging branch's stiffness, times (ωΔt)², is what its tip's velocity jumps by;
@@ -392,7 +403,6 @@ void Climber::recalibrate_changed(Plant& plant, double dt, GrowthReport& report)
     last = now;
     ++report.recalibrated;
   }
-  next_settled_ = (next_settled_ + turns) % count;
 }
 
 }  // namespace liana

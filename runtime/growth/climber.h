@@ -69,8 +69,8 @@ class Climber {
   void grow_once(Plant& plant, const Surroundings& around, double dt);
   void germinate(Plant& plant, const Surroundings& around);
   bool may_grow(const Plant& plant, int level) const;
-  void start_shoot(Plant& plant, const Attachment& at, BranchId parent, const Vec3& direction, Shoot shoot,
-                   const Surroundings& around);
+  void start_shoot(Plant& plant, const Attachment& at, BranchId parent, LineageId lineage,
+                   const Vec3& direction, Shoot shoot, const Surroundings& around);
   ParticleId append_stem(Plant& plant, const Shoot& shoot, const Attachment& at, Quat orientation,
                          const Surroundings& around);
   void set_tip_mass(Plant& plant, ParticleId id) const;
@@ -84,7 +84,7 @@ class Climber {
   ClimberParameters parameters_;
   SpeciesLaw law_;
   Vec3 seed_;
-  Random wander_, branching_, leafing_;
+  uint64_t random_seed_;
   std::vector<Shoot> shoots_;
   Leaves leaves_;
   Anchors anchors_;
@@ -104,8 +104,7 @@ class Climber {
   HeldChain chain_;
   std::vector<RestPose> rest_;
   bool germinated_ = false;
-  size_t next_hold_ = 0;     // particle looked at next for a new anchor
-  size_t next_settled_ = 0;  // branch whose turn to be calibrated finely comes next
+  uint64_t steps_ = 0, calls_ = 0;  // of growth: whose turns come when
 };
 
 }  // namespace liana

@@ -15,7 +15,7 @@ class Leaves {
   /// A young leaf at the head of a shoot's full-grown particle. `outward` (unit) points away from the
   /// support.
   BranchId sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3& outward,
-                  const Surroundings& around, const SpeciesLaw& law, Random& random);
+                  const Surroundings& around, const SpeciesLaw& law, uint64_t seed);
 
   /// Enlarges and turns the leaves that are not full-grown.
   void grow(Plant& plant, const Surroundings& around, double dt, const SpeciesLaw& law);

@@ -17,8 +17,8 @@ Vec3 course_on_surface(const Vec3& normal, double course) {
 }
 
 Quat tip_turn(const Shoot& shoot, const Vec3& forward, double radius, const std::optional<Support>& support,
-              const Surroundings& around, const TropismParameters& parameters, Random& random, double dt) {
-  const double noise = parameters.wander * std::sqrt(dt) * random.normal();
+              const Surroundings& around, const TropismParameters& parameters, double wander, double dt) {
+  const double noise = parameters.wander * std::sqrt(dt) * wander;
   if (!support) {
     const Quat light = phototropism(forward, around.to_sun, 1 - shoot.light, parameters.phototropism * dt);
     const Quat up = steering(forward, Vec3::UnitY(), parameters.climbing * dt);
@@ -60,7 +60,7 @@ Vec3 along(const Blocked& wall, const Vec3& forward, const Vec3& away) {
 }
 
 bool grow_tip(Plant& plant, const Shoot& shoot, const ClimberParameters& parameters,
-              const Surroundings& around, Random& random, double dt) {
+              const Surroundings& around, double wander, double dt) {
   Branch& branch = plant.branches[shoot.branch.index()];
   const ParticleId tip = branch.particles.back();
   Particle& particle = plant.particles[tip.index()];
@@ -79,7 +79,7 @@ bool grow_tip(Plant& plant, const Shoot& shoot, const ClimberParameters& paramet
   } else {
     turn_segment(
         plant, tip,
-        tip_turn(shoot, forward, particle.half_width, support, around, parameters.tropisms, random, dt));
+        tip_turn(shoot, forward, particle.half_width, support, around, parameters.tropisms, wander, dt));
   }
   lengthen_segment(plant, tip, by);
   branch.length += by;

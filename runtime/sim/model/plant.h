@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "materials/bake/bake.h"
+#include "mesher/base/ids.h"
 #include "runtime/sim/model/large_pages.h"
 
 namespace liana {
@@ -90,6 +91,8 @@ struct Branch {
   double stiffness_scale = 1;  ///< k*/ω₁² of the last calibration, of the physical joint stiffnesses
   uint32_t shade = kNoShade;   ///< what its look varies with, once ids have changed
   double strength = 0;         ///< Pa that its joints bear (see breaking.h); 0: it never breaks
+  LineageId lineage;           ///< invalid in plants put together by hand
+  uint32_t born = 0;           ///< particles that it ever had: the ordinal of the next one's lineage
 };
 
 /// Direct: PlantStepper's own; ShapeMatching: [Haedrich17]'s scheme, which no material drives
@@ -115,6 +118,11 @@ struct Plant {
   std::vector<Particle> particles;   ///< parents first
   std::vector<Branch> branches;      ///< parents first
   std::vector<WorldSpring> anchors;  ///< persist; contacts and grabs are given to each step anew
+  std::vector<LineageId> lineage;    ///< one per particle; empty in plants put together by hand
+
+  LineageId lineage_of(ParticleId particle) const {
+    return particle.index() < lineage.size() ? lineage[particle.index()] : LineageId();
+  }
 };
 
 }  // namespace liana

@@ -33,6 +33,10 @@ std::vector<ParticleId> marked_ids(const std::vector<char>& marked, ParticleId r
   return ids;
 }
 
+bool has_lineage(const Plant& plant) {
+  return plant.lineage.size() == plant.particles.size();
+}
+
 // The taken particles as a plant: ids by their order.
 Plant copy_of(const Plant& plant, std::span<const ParticleId> taken, DetachedFrom& from) {
   Plant piece;
@@ -60,6 +64,7 @@ Plant copy_of(const Plant& plant, std::span<const ParticleId> taken, DetachedFro
       particle.parent = now[particle.parent.index()];
     piece.particles.push_back(particle);
     piece.motion.push_back(plant.motion[id.index()]);
+    if (has_lineage(plant)) piece.lineage.push_back(plant.lineage[id.index()]);
   }
   for (WorldSpring anchor : plant.anchors) {
     anchor.particle = now[anchor.particle.index()];
@@ -99,6 +104,7 @@ void let_fly(Plant& piece) {
 // Takes the marked particles away, of which `root` is the first.
 TopologyChange remove_marked(Plant& plant, ParticleId root, const std::vector<char>& gone) {
   TopologyChange change;
+  const bool known = has_lineage(plant);
   const size_t count = plant.particles.size(), branch_count = plant.branches.size();
   change.particles.resize(count);
   change.branches.resize(branch_count);
@@ -139,7 +145,9 @@ TopologyChange remove_marked(Plant& plant, ParticleId root, const std::vector<ch
     if (particle.parent.valid()) particle.parent = change.particles[particle.parent.index()];
     particle.branch = change.branches[particle.branch.index()];
     plant.motion[to] = plant.motion[i];
+    if (known) plant.lineage[to] = plant.lineage[i];
   }
+  plant.lineage.resize(known ? kept : 0);
   plant.particles.resize(kept);
   plant.motion.resize(kept);
 
@@ -152,6 +160,19 @@ TopologyChange remove_marked(Plant& plant, ParticleId root, const std::vector<ch
 
 }  // namespace
 
+ParticleId append_particle(Plant& plant, BranchId id, const Particle& particle, const Motion& motion) {
+  Branch& branch = plant.branches[id.index()];
+  const ParticleId self(plant.particles.size());
+  if (plant.lineage.size() == plant.particles.size() && (branch.lineage.valid() || !plant.lineage.empty()))
+    plant.lineage.push_back(child_lineage(branch.lineage, LineageKind::Segment, branch.born));
+  ++branch.born;
+  plant.particles.push_back(particle);
+  plant.particles.back().branch = id;
+  plant.motion.push_back(motion);
+  branch.particles.push_back(self);
+  return self;
+}
+
 BranchId append_branch(Plant& plant, Branch branch, ParticleId at, std::span<const Particle> particles,
                        std::span<const Motion> motion) {
   require(!particles.empty() && particles.size() == motion.size(),
@@ -159,15 +180,12 @@ BranchId append_branch(Plant& plant, Branch branch, ParticleId at, std::span<con
   const BranchId id(plant.branches.size());
   branch.parent = at.valid() ? plant.particles[at.index()].branch : BranchId();
   branch.particles.clear();
-  for (size_t i = 0; i < particles.size(); ++i) {
-    const ParticleId self(plant.particles.size());
-    plant.particles.push_back(particles[i]);
-    plant.particles.back().parent = i > 0 ? branch.particles.back() : at;
-    plant.particles.back().branch = id;
-    plant.motion.push_back(motion[i]);
-    branch.particles.push_back(self);
-  }
   plant.branches.push_back(std::move(branch));
+  for (size_t i = 0; i < particles.size(); ++i) {
+    Particle particle = particles[i];
+    particle.parent = i > 0 ? plant.branches.back().particles.back() : at;
+    append_particle(plant, id, particle, motion[i]);
+  }
   return id;
 }
 

@@ -18,6 +18,10 @@ struct TopologyChange {
   BranchId shortened;  ///< new id of the branch that was cut through; invalid if none kept a lower part
 };
 
+/// Appends one particle to the end of a branch, with the lineage that follows from the branch's.
+/// particle.parent must be set.
+ParticleId append_particle(Plant& plant, BranchId branch, const Particle& particle, const Motion& motion);
+
 /// A chain that grows from `at`: fills in parent, branch and ids. particles[i] is held by the one before, the
 /// first by `at` (invalid: by the world). branch.particles is set here. Both arrays root to tip, of equal
 /// length, not empty.
