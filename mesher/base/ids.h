@@ -29,6 +29,11 @@ struct LineageId {
 
   constexpr bool valid() const { return value != 0; }
   constexpr auto operator<=>(const LineageId&) const = default;
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(value);
+  }
 };
 
 enum class LineageKind : uint8_t { Plant = 1, Branch, Segment, Leaf, Anchor };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesher/base/random.h"
 #include "runtime/sim/model/rotation.h"
 
 namespace liana {

@@ -117,10 +117,10 @@ void Leaves::grow(Plant& plant, const Surroundings& around, double dt, const Spe
   }
 }
 
-void Leaves::follow(const TopologyChange& change) {
+void Leaves::follow(const Remap& remap) {
   size_t kept = 0, kept_grown = 0;
   for (size_t i = 0; i < leaves_.size(); ++i) {
-    leaves_[i].branch = change.branches[leaves_[i].branch.index()];
+    leaves_[i].branch = remap(leaves_[i].branch);
     if (!leaves_[i].branch.valid()) continue;
     kept_grown += i < first_growing_;
     leaves_[kept++] = leaves_[i];

@@ -23,6 +23,11 @@ struct Shoot {
   uint64_t steps = 0;  ///< of growth so far: the ordinal of its next random turn
   bool growing = true;
   bool lost_tip = false;  ///< since the last step of growth
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(branch, tip_radius, course, longest, light, free_length, since_leaf, leaves, steps, growing, lost_tip);
+  }
 };
 
 /// Upwards along a surface of this outward normal, rotated by `course` about it: unit; zero where the surface

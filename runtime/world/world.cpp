@@ -211,6 +211,7 @@ void World::move_obstacles() {
 void World::step() {
   const PhaseSeconds before = report().seconds;
   start_events();
+  take_removals();
   lead_grabs();
   move_obstacles();
   const auto prepare = [&](size_t i) {

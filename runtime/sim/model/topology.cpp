@@ -102,8 +102,8 @@ void let_fly(Plant& piece) {
 }
 
 // Takes the marked particles away, of which `root` is the first.
-TopologyChange remove_marked(Plant& plant, ParticleId root, const std::vector<char>& gone) {
-  TopologyChange change;
+const Remap& remove_marked(Plant& plant, ParticleId root, const std::vector<char>& gone) {
+  Remap change;
   const bool known = has_lineage(plant);
   const size_t count = plant.particles.size(), branch_count = plant.branches.size();
   change.particles.resize(count);
@@ -135,7 +135,7 @@ TopologyChange remove_marked(Plant& plant, ParticleId root, const std::vector<ch
     plant.branches[id.index()] = std::move(branch);
   }
   plant.branches.resize(branches);
-  change.shortened = change.branches[cut.index()];
+  if (change(cut).valid()) change.shortened.push_back(change(cut));
 
   // Particles before the first that goes stay where they are.
   for (size_t i = root.index(); i < count; ++i) {
@@ -155,7 +155,8 @@ TopologyChange remove_marked(Plant& plant, ParticleId root, const std::vector<ch
     anchor.particle = change.particles[anchor.particle.index()];
     return !anchor.particle.valid();
   });
-  return change;
+  plant.removals.add(std::move(change));
+  return plant.removals.last();
 }
 
 }  // namespace
@@ -180,6 +181,7 @@ BranchId append_branch(Plant& plant, Branch branch, ParticleId at, std::span<con
   const BranchId id(plant.branches.size());
   branch.parent = at.valid() ? plant.particles[at.index()].branch : BranchId();
   branch.particles.clear();
+  branch.born = 0;
   plant.branches.push_back(std::move(branch));
   for (size_t i = 0; i < particles.size(); ++i) {
     Particle particle = particles[i];
@@ -189,12 +191,12 @@ BranchId append_branch(Plant& plant, Branch branch, ParticleId at, std::span<con
   return id;
 }
 
-TopologyChange remove_subtree(Plant& plant, ParticleId root) {
+const Remap& remove_subtree(Plant& plant, ParticleId root) {
   remember_shades(plant);
   return remove_marked(plant, root, mark_subtree(plant, root));
 }
 
-Plant detach_subtree(Plant& plant, ParticleId root, TopologyChange* change, DetachedFrom* from) {
+Plant detach_subtree(Plant& plant, ParticleId root, Remap* change, DetachedFrom* from) {
   remember_shades(plant);
   const std::vector<char> marked = mark_subtree(plant, root);
   DetachedFrom origin;
@@ -207,8 +209,8 @@ Plant detach_subtree(Plant& plant, ParticleId root, TopologyChange* change, Deta
           length_of(piece, piece.branches[b].particles) / length_of(plant, whole.particles);
   }
   let_fly(piece);
-  TopologyChange moved = remove_marked(plant, root, marked);
-  if (change) *change = std::move(moved);
+  const Remap& moved = remove_marked(plant, root, marked);
+  if (change) *change = moved;
   if (from) *from = std::move(origin);
   return piece;
 }

@@ -4,9 +4,11 @@
 #include <set>
 
 #include "mesher/base/error.h"
+#include "mesher/base/random.h"
 #include "runtime/obstacles/box_mesh.h"
 #include "runtime/sim/calibrate/discrete_response.h"
 #include "runtime/sim/model/state_hash.h"
+#include "runtime/sim/model/topology.h"
 #include "runtime/sim/step/joints.h"
 #include "runtime/wind/field/sheltered_wind.h"
 #include "runtime/wind/field/steady_gust_wind.h"
@@ -126,9 +128,7 @@ TEST(Climber, FastGrowthIsCutIntoSmallSteps) {
 }
 
 void cut(ClimberScene& scene, ParticleId at) {
-  const TopologyChange change = remove_subtree(scene.plant, at);
-  scene.climber.follow(change);
-  scene.stepper.follow(change);
+  const Remap change = remove_subtree(scene.plant, at);
 }
 
 /// Of every particle: the first shoot that it grows from, by its lineage.

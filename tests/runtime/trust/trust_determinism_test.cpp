@@ -10,6 +10,7 @@
 #include <string>
 
 #include "mesher/base/hash.h"
+#include "mesher/base/random.h"
 #include "runtime/sim/calibrate/plant_from_bake.h"
 #include "runtime/sim/model/state_hash.h"
 #include "runtime/world/world.h"
