@@ -8,6 +8,7 @@
 
 #include "materials/law/power_law.h"
 #include "mesher/base/error.h"
+#include "mesher/base/fixed_math.h"
 #include "mesher/base/nearest_word.h"
 
 namespace liana {
@@ -35,7 +36,7 @@ ModelFrequencies power_law(const SpeciesLaw& law, const Domains& domains) {
 ModelFrequencies scaled(const Domains& domains, double s, double mu) {
   ModelFrequencies result;
   for (const ModelledDomain& domain : domains)
-    result.frequencies.push_back(domain.default_frequency * std::sqrt(s * std::pow(mu, domain.level)));
+    result.frequencies.push_back(domain.default_frequency * std::sqrt(s * fixed::pow(mu, domain.level)));
   return result;
 }
 
@@ -44,7 +45,7 @@ ModelFrequencies constant(const SpeciesLaw& law, const Domains& domains) {
   const bool given = law.model.trunk_frequency > 0;
   const double wanted =
       given ? law.model.trunk_frequency : frequency_of_length(law.group(trunk.group), trunk.length);
-  const double s = std::pow(wanted / trunk.default_frequency, 2);
+  const double s = fixed::pow(wanted / trunk.default_frequency, 2);
   ModelFrequencies result = scaled(domains, s, 1);
   result.notes.push_back(
       fmt::format("constant model: Young's modulus scaled by {:.4g}, so that the main trunk has {:.4g} Hz{}",
@@ -59,7 +60,7 @@ ModelFrequencies depth(const SpeciesLaw& law, const Domains& domains) {
   const bool given = s > 0;
   if (!given) {
     const double wanted = frequency_of_length(law.group(trunk.group), trunk.length);
-    s = std::pow(wanted / trunk.default_frequency, 2) / std::pow(mu, trunk.level);
+    s = fixed::pow(wanted / trunk.default_frequency, 2) / fixed::pow(mu, trunk.level);
   }
   ModelFrequencies result = scaled(domains, s, mu);
   result.notes.push_back(fmt::format("depth model: s = {:.4g}{}, mu = {:.4g}", s,

@@ -8,6 +8,7 @@
 #include "materials/law/damping.h"
 #include "materials/law/law_numbers.h"
 #include "mesher/base/error.h"
+#include "mesher/base/fixed_math.h"
 
 namespace liana {
 namespace {
@@ -25,11 +26,11 @@ int level_of(const std::string& name) {
 }  // namespace
 
 double frequency_of_length(const GroupLaw& law, double length) {
-  return law.reference_frequency * std::pow(length / law.reference_length, law.epsilon1);
+  return law.reference_frequency * fixed::pow(length / law.reference_length, law.epsilon1);
 }
 
 double mass_scaling_of_length(const GroupLaw& law, double length) {
-  return law.c2 * std::pow(length, law.epsilon2);
+  return law.c2 * fixed::pow(length, law.epsilon2);
 }
 
 double stiffness_scaling(double mass_scaling, double frequency, double default_frequency) {

@@ -1,21 +1,44 @@
-// Random numbers in named streams: what one part of a program draws does not shift what another part gets.
+// Random numbers. Draws are pure functions of what they are for; Random is a stream with a name, for work
+// that is done once in one order (the waves of a wind, a search for outliers).
 #pragma once
 
 #include <cmath>
 #include <cstdint>
 #include <string_view>
 
+#include "mesher/base/fixed_math.h"
+#include "mesher/base/ids.h"
 #include "mesher/base/types.h"
 
 namespace liana {
+
+/// The numbers of one thing for one purpose: the n-th depends on (seed, whose, purpose, n) and nothing else,
+/// so what others draw, or whether they are there, changes none of them. splitmix64 with a start of its own.
+class Draws {
+ public:
+  Draws(uint64_t seed, LineageId whose, std::string_view purpose)
+      : start_(mix_bits(mix_bits(seed ^ hash_name(purpose)) ^ whose.value)) {}
+
+  uint64_t bits(uint64_t n) const { return mix_bits(start_ + (n + 1) * 0x9e3779b97f4a7c15ull); }
+  /// In [0, 1), 53 random bits.
+  double uniform(uint64_t n) const { return static_cast<double>(bits(n) >> 11) * 0x1p-53; }
+  double uniform(uint64_t n, double low, double high) const { return low + (high - low) * uniform(n); }
+  /// Mean 0, variance 1: Box-Muller, one of the pair, of 32 bits each.
+  double normal(uint64_t n) const {
+    const uint64_t both = bits(n);
+    const double radius = std::sqrt(-2 * fixed::log((static_cast<double>(both >> 32) + 1) * 0x1p-32));
+    return radius * fixed::cos(2 * kPi * static_cast<double>(both & 0xffffffffu) * 0x1p-32);
+  }
+
+ private:
+  uint64_t start_;
+};
 
 /// A PCG-XSH-RR 64/32 generator [O'Neill 2014]. Equal seed and name give the same numbers on every machine.
 class Random {
  public:
   Random(uint64_t seed, std::string_view stream) {
-    uint64_t name = 14695981039346656037ull;  // FNV-1a
-    for (char c : stream) name = (name ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-    increment_ = (name << 1) | 1;
+    increment_ = (hash_name(stream) << 1) | 1;
     next();
     state_ += seed;
     next();
@@ -35,8 +58,8 @@ class Random {
 
   /// Mean 0, variance 1: Box-Muller, one of the pair.
   double normal() {
-    const double radius = std::sqrt(-2 * std::log((next() + 1.0) * 0x1p-32));
-    return radius * std::cos(2 * kPi * uniform());
+    const double radius = std::sqrt(-2 * fixed::log((next() + 1.0) * 0x1p-32));
+    return radius * fixed::cos(2 * kPi * uniform());
   }
 
  private:

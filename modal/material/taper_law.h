@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "mesher/base/fixed_math.h"
+
 namespace liana {
 
 struct TaperLaw {
@@ -16,7 +18,7 @@ struct TaperLaw {
 
 /// [Wang17] Eq. 11: factor on E and ρ at geodesic distance `fraction` · ℓ from the root, fraction in [0, 1].
 inline double taper_scaling(const TaperLaw& law, double fraction) {
-  const double t = std::pow(1 - fraction, law.epsilon3);
+  const double t = fixed::pow(1 - fraction, law.epsilon3);
   return (1 - t) * law.tip_scaling + t * law.root_scaling;
 }
 

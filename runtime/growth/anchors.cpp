@@ -38,8 +38,10 @@ bool Anchors::attach(Plant& plant, ParticleId particle, const Surroundings& arou
   spring.target = motion.position;
   records_.push_back(record);
   plant.anchors.push_back(spring);
-  held_.resize(std::max(held_.size(), plant.particles.size()), 0);
-  held_[particle.index()] = 1;
+  held_.resize(std::max(held_.size(), plant.particles.size()));
+  Held& held = held_[particle.index()];
+  held.now = true;
+  records_.back().lineage = child_lineage(plant.lineage_of(particle), LineageKind::Anchor, held.times++);
   return true;
 }
 
@@ -68,7 +70,7 @@ void Anchors::update(Plant& plant, double dt_growth) {
     }
     const double bearable = kGives * bearable_force(segment) / stiffness;
     if ((motion.position - held).norm() > std::min(parameters_.release_distance, bearable)) {
-      held_[spring.particle.index()] = 0;
+      held_[spring.particle.index()].now = false;
       ++released_;
       continue;
     }
@@ -79,13 +81,10 @@ void Anchors::update(Plant& plant, double dt_growth) {
   plant.anchors.resize(kept);
 }
 
-void Anchors::follow(const TopologyChange& change) {
-  std::vector<uint8_t> held;
-  for (size_t i = 0; i < held_.size(); ++i)
-    if (change.particles[i].valid()) held.push_back(held_[i]);
-  held_ = std::move(held);
+void Anchors::follow(const Remap& remap) {
+  remap.keep_particles(held_);
   std::erase_if(records_, [&](Record& record) {
-    record.particle = change.particles[record.particle.index()];
+    record.particle = remap(record.particle);
     return !record.particle.valid();
   });
 }

@@ -10,7 +10,7 @@
 #include "runtime/growth/climber_parameters.h"
 #include "runtime/growth/surroundings.h"
 #include "runtime/sim/model/plant.h"
-#include "runtime/sim/model/topology.h"
+#include "runtime/sim/model/remap.h"
 
 namespace liana {
 
@@ -28,11 +28,19 @@ class Anchors {
   void update(Plant& plant, double dt_growth);
 
   /// The plant lost particles, and its anchors with them.
-  void follow(const TopologyChange& change);
+  void follow(const Remap& remap);
 
-  bool holds(ParticleId particle) const { return particle.index() < held_.size() && held_[particle.index()]; }
+  bool holds(ParticleId particle) const {
+    return particle.index() < held_.size() && held_[particle.index()].now;
+  }
   size_t count() const { return records_.size(); }
   size_t released() const { return released_; }  ///< so far
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(records_, held_, released_);
+    // not state: parameters_, young_radius_: given again
+  }
 
  private:
   struct Record {
@@ -41,11 +49,24 @@ class Anchors {
     double age = 0;            // growth s
     const SdfObstacle* solid;  // what it holds on to, null: the ground
     Vec3 on_solid, normal;     // where, m, and out of it, unit; in the solid's own frame
+    LineageId lineage;         // the particle's how many-th anchor it is
+    template <class Archive>
+    void persist(Archive& a) {
+      a(particle, gap, age, solid, on_solid, normal, lineage);
+    }
+  };
+  struct Held {
+    bool now = false;
+    uint32_t times = 0;  // so far
+    template <class Archive>
+    void persist(Archive& a) {
+      a(now, times);
+    }
   };
   AnchorParameters parameters_;
   double young_radius_;
   std::vector<Record> records_;  // one for each of plant.anchors
-  std::vector<uint8_t> held_;    // per particle
+  std::vector<Held> held_;       // per particle
   size_t released_ = 0;
 };
 

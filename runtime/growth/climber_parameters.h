@@ -70,7 +70,9 @@ struct ClimberParameters {
   double strength = 0;           ///< Pa that stems bear before they break; 0: any
   double leaf_strength = 0;      ///< Pa that leaves bear
   Vec3 gravity = {0, -9.81, 0};  ///< m/s², that the plant grows under
-  size_t max_particles = 5000;   ///< stems and leaves; laterals stop at 55-85 % of it, leaders at all of it
+  /// Stems and leaves; laterals stop at 55-85 % of it, leaders at all of it. All shoots draw on it: near it,
+  /// what one does not grow another may.
+  size_t max_particles = 5000;
   TropismParameters tropisms;
   BranchingParameters branching;
   LeafParameters leaves;

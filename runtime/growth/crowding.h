@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "runtime/sim/model/topology.h"
+#include "runtime/sim/model/remap.h"
 
 namespace liana {
 
@@ -21,13 +21,19 @@ class Crowding {
   }
 
   /// The plant lost particles: they take no room any more.
-  void follow(const TopologyChange& change) {
+  void follow(const Remap& remap) {
     for (auto& [cell, entries] : cells_)
       std::erase_if(entries, [&](Entry& entry) {
-        entry.particle = change.particles[entry.particle.index()];
-        entry.branch = change.branches[entry.branch.index()];
+        entry.particle = remap(entry.particle);
+        entry.branch = remap(entry.branch);
         return !entry.particle.valid();
       });
+  }
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(cells_);
+    // not state: cell_: a parameter's
   }
 
   /// Whether a point of a branch other than `own` is within `radius` (m, at most the cell).
@@ -49,6 +55,10 @@ class Crowding {
     Vec3 x;
     BranchId branch;
     ParticleId particle;
+    template <class Archive>
+    void persist(Archive& a) {
+      a(x, branch, particle);
+    }
   };
   Key key(const Vec3& x) const {
     return {static_cast<int>(std::floor(x.x() / cell_)), static_cast<int>(std::floor(x.y() / cell_)),

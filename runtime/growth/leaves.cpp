@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesher/base/random.h"
 #include "runtime/growth/segments.h"
 #include "runtime/growth/tropisms.h"
 #include "runtime/sim/model/rod_section.h"
+#include "runtime/sim/model/rotation.h"
 
 namespace liana {
 namespace {
@@ -38,14 +40,15 @@ Vec3 out_of_solids(const Vec3& base, Vec3 direction, double length, const Surrou
 }  // namespace
 
 BranchId Leaves::sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3& outward,
-                        const Surroundings& around, const SpeciesLaw& law, Random& random) {
+                        const Surroundings& around, const SpeciesLaw& law, uint64_t seed) {
   const LeafParameters& p = parameters_;
+  const LineageId lineage = child_lineage(plant.lineage_of(node), LineageKind::Leaf, 0);  // one a node
+  const Draws draws(seed, lineage, "growth/leaf");
   const Vec3 forward = forward_of(plant, node);
   Vec3 side = outward.cross(forward);
   side = side.norm() > 1e-6 ? side.normalized() : forward.unitOrthogonal();
-  side = Eigen::AngleAxisd(p.divergence * shoot.leaves++, forward) * side;
-  Vec3 vary;  // one after the other: compilers evaluate arguments in the order they like
-  for (const int axis : {2, 1, 0}) vary[axis] = p.variation * random.normal();
+  side = rotation_about(forward, p.divergence * shoot.leaves++) * side;
+  const Vec3 vary = p.variation * Vec3(draws.normal(0), draws.normal(1), draws.normal(2));
   // Sideways from the stem, away from the wall, the tip hanging a little.
   Vec3 midrib = side + 0.35 * forward + vary;
   const double away = midrib.dot(outward);
@@ -53,7 +56,7 @@ BranchId Leaves::sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3&
   const double height = head_of(plant, node).y() - around.ground_height;
   if (height < p.petiole + p.length) midrib.y() = std::max(midrib.y(), 0.3 * midrib.norm());
 
-  const double size = 1 + p.variation * random.uniform(-1, 1);
+  const double size = 1 + p.variation * draws.uniform(3, -1, 1);
   midrib = out_of_solids(head_of(plant, node), midrib.normalized(), p.petiole + size * p.length, around);
   Leaf leaf{BranchId(plant.branches.size()), size * p.length, size * p.width, outward};
   Branch branch;
@@ -61,6 +64,7 @@ BranchId Leaves::sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3&
   branch.kind = DomainKind::Leaf;
   branch.level = plant.branches[shoot.branch.index()].level + 1;
   branch.group = "leaf";
+  branch.lineage = lineage;
   plant.branches.push_back(branch);
   const SegmentShape shape{kYoungest * leaf.full_length / 2, kYoungest * leaf.full_width / 2, p.thickness / 2,
                            kYoungest * p.petiole};
@@ -113,10 +117,10 @@ void Leaves::grow(Plant& plant, const Surroundings& around, double dt, const Spe
   }
 }
 
-void Leaves::follow(const TopologyChange& change) {
+void Leaves::follow(const Remap& remap) {
   size_t kept = 0, kept_grown = 0;
   for (size_t i = 0; i < leaves_.size(); ++i) {
-    leaves_[i].branch = change.branches[leaves_[i].branch.index()];
+    leaves_[i].branch = remap(leaves_[i].branch);
     if (!leaves_[i].branch.valid()) continue;
     kept_grown += i < first_growing_;
     leaves_[kept++] = leaves_[i];

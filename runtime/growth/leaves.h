@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "runtime/growth/shoot_growth.h"
-#include "runtime/sim/model/topology.h"
+#include "runtime/sim/model/remap.h"
 
 namespace liana {
 
@@ -15,7 +15,7 @@ class Leaves {
   /// A young leaf at the head of a shoot's full-grown particle. `outward` (unit) points away from the
   /// support.
   BranchId sprout(Plant& plant, Shoot& shoot, ParticleId node, const Vec3& outward,
-                  const Surroundings& around, const SpeciesLaw& law, Random& random);
+                  const Surroundings& around, const SpeciesLaw& law, uint64_t seed);
 
   /// Enlarges and turns the leaves that are not full-grown.
   void grow(Plant& plant, const Surroundings& around, double dt, const SpeciesLaw& law);
@@ -24,9 +24,15 @@ class Leaves {
   void mark_growing(const Plant& plant, std::vector<uint8_t>& growing) const;
 
   /// The plant lost particles, and leaves with them.
-  void follow(const TopologyChange& change);
+  void follow(const Remap& remap);
 
   size_t count() const { return leaves_.size(); }
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(leaves_, first_growing_);
+    // not state: parameters_: given again
+  }
 
  private:
   struct Leaf {
@@ -34,6 +40,10 @@ class Leaves {
     double full_length, full_width;  // m
     Vec3 outward;                    // unit
     double age = 0;                  // growth s
+    template <class Archive>
+    void persist(Archive& a) {
+      a(branch, full_length, full_width, outward, age);
+    }
   };
   void resize(Plant& plant, const Leaf& leaf, double size, const SpeciesLaw& law) const;
 

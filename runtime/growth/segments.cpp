@@ -1,6 +1,7 @@
 #include "runtime/growth/segments.h"
 
 #include "runtime/sim/model/rod_section.h"
+#include "runtime/sim/model/topology.h"
 
 namespace liana {
 
@@ -8,7 +9,6 @@ ParticleId append_segment(Plant& plant, BranchId branch, const Attachment& at, c
                           const Quat& orientation) {
   Particle particle;
   particle.parent = at.parent;
-  particle.branch = branch;
   particle.half_length = shape.half_length;
   particle.half_width = shape.half_width;
   particle.half_thickness = shape.half_thickness;
@@ -31,11 +31,7 @@ ParticleId append_segment(Plant& plant, BranchId branch, const Attachment& at, c
     particle.joint.rest = orientation;
     motion.position = at.on_parent + from_joint;
   }
-  const ParticleId id(plant.particles.size());
-  plant.particles.push_back(particle);
-  plant.motion.push_back(motion);
-  plant.branches[branch.index()].particles.push_back(id);
-  return id;
+  return append_particle(plant, branch, particle, motion);
 }
 
 Vec3 forward_of(const Plant& plant, ParticleId particle) {

@@ -3,38 +3,40 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesher/base/fixed_math.h"
 #include "runtime/growth/segments.h"
 #include "runtime/growth/tropisms.h"
+#include "runtime/sim/model/rotation.h"
 
 namespace liana {
 
 Vec3 course_on_surface(const Vec3& normal, double course) {
   const Vec3 up = Vec3::UnitY() - normal.y() * normal;
   if (up.norm() < 0.3) return Vec3::Zero();
-  return Eigen::AngleAxisd(course, normal) * up.normalized();
+  return rotation_about(normal, course) * up.normalized();
 }
 
 Quat tip_turn(const Shoot& shoot, const Vec3& forward, double radius, const std::optional<Support>& support,
-              const Surroundings& around, const TropismParameters& parameters, Random& random, double dt) {
-  const double noise = parameters.wander * std::sqrt(dt) * random.normal();
+              const Surroundings& around, const TropismParameters& parameters, double wander, double dt) {
+  const double noise = parameters.wander * std::sqrt(dt) * wander;
   if (!support) {
     const Quat light = phototropism(forward, around.to_sun, 1 - shoot.light, parameters.phototropism * dt);
     const Quat up = steering(forward, Vec3::UnitY(), parameters.climbing * dt);
-    return Quat(Eigen::AngleAxisd(noise, around.to_sun.unitOrthogonal())) * up * light;
+    return rotation_about(around.to_sun.unitOrthogonal(), noise) * up * light;
   }
   const Vec3& normal = support->normal;
   const double gap = support->distance - radius - parameters.cling_gap;
   const double ease = std::clamp(gap / parameters.approach_length, -1.0, 1.0);
   const Vec3 course = course_on_surface(normal, shoot.course);
   const Vec3 square_turn = course.isZero(0) ? normal.unitOrthogonal() : Vec3(course.cross(normal));
-  const Quat adapt = surface_adaption(forward, -normal, ease * std::sin(parameters.approach_angle),
+  const Quat adapt = surface_adaption(forward, -normal, ease * fixed::sin(parameters.approach_angle),
                                       parameters.surface_adaption * dt, square_turn);
   // A tip that holds on follows the light along the surface only: it does not let go for more.
   const Vec3 light_on_surface = around.to_sun - around.to_sun.dot(normal) * normal;
   const Quat light = phototropism(forward, light_on_surface.stableNormalized(), 1 - shoot.light,
                                   parameters.phototropism * dt * light_on_surface.norm());
   const Quat climb = steering(forward, course, parameters.climbing * (1 - std::max(0.0, ease)) * dt);
-  return Quat(Eigen::AngleAxisd(noise, normal)) * climb * adapt * light;  // Eq. 8 with two rotations more
+  return rotation_about(normal, noise) * climb * adapt * light;  // Eq. 8 with two rotations more
 }
 
 std::optional<Blocked> in_the_way(const Surroundings& around, const Vec3& head, const Vec3& forward,
@@ -58,7 +60,7 @@ Vec3 along(const Blocked& wall, const Vec3& forward, const Vec3& away) {
 }
 
 bool grow_tip(Plant& plant, const Shoot& shoot, const ClimberParameters& parameters,
-              const Surroundings& around, Random& random, double dt) {
+              const Surroundings& around, double wander, double dt) {
   Branch& branch = plant.branches[shoot.branch.index()];
   const ParticleId tip = branch.particles.back();
   Particle& particle = plant.particles[tip.index()];
@@ -77,7 +79,7 @@ bool grow_tip(Plant& plant, const Shoot& shoot, const ClimberParameters& paramet
   } else {
     turn_segment(
         plant, tip,
-        tip_turn(shoot, forward, particle.half_width, support, around, parameters.tropisms, random, dt));
+        tip_turn(shoot, forward, particle.half_width, support, around, parameters.tropisms, wander, dt));
   }
   lengthen_segment(plant, tip, by);
   branch.length += by;

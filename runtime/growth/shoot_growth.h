@@ -4,7 +4,6 @@
 #include <optional>
 #include <span>
 
-#include "mesher/base/random.h"
 #include "runtime/growth/climber_parameters.h"
 #include "runtime/growth/surroundings.h"
 #include "runtime/sim/model/plant.h"
@@ -21,17 +20,24 @@ struct Shoot {
   double free_length = 0;  ///< m since its last hold
   double since_leaf = 0;   ///< m
   unsigned leaves = 0;
+  uint64_t steps = 0;  ///< of growth so far: the ordinal of its next random turn
   bool growing = true;
   bool lost_tip = false;  ///< since the last step of growth
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(branch, tip_radius, course, longest, light, free_length, since_leaf, leaves, steps, growing, lost_tip);
+  }
 };
 
 /// Upwards along a surface of this outward normal, rotated by `course` about it: unit; zero where the surface
 /// is nearly level, for there is no up on it.
 Vec3 course_on_surface(const Vec3& normal, double course);
 
-/// R_g of [Haedrich17] Eq. 8 for a tip: surface adaption, phototropism, the shoot's course and random wander.
+/// R_g of [Haedrich17] Eq. 8 for a tip: surface adaption, phototropism, the shoot's course and random wander
+/// (a draw of mean 0 and variance 1).
 Quat tip_turn(const Shoot& shoot, const Vec3& forward, double radius, const std::optional<Support>& support,
-              const Surroundings& around, const TropismParameters& parameters, Random& random, double dt);
+              const Surroundings& around, const TropismParameters& parameters, double wander, double dt);
 
 /// What a tip would grow into.
 struct Blocked {
@@ -46,9 +52,9 @@ std::optional<Blocked> in_the_way(const Surroundings& around, const Vec3& head, 
 /// Where it goes on, unit: along what stops it; where it meets that squarely, in the direction `away`.
 Vec3 along(const Blocked& wall, const Vec3& forward, const Vec3& away);
 
-/// Turns and lengthens the shoot's last particle by dt of growth and keeps its head out of solids and ground.
-/// True when the particle is full-grown.
+/// Turns (by a random draw of mean 0 and variance 1, too) and lengthens the shoot's last particle by dt of
+/// growth and keeps its head out of solids and ground. True when the particle is full-grown.
 bool grow_tip(Plant& plant, const Shoot& shoot, const ClimberParameters& parameters,
-              const Surroundings& around, Random& random, double dt);
+              const Surroundings& around, double wander, double dt);
 
 }  // namespace liana

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesher/base/fixed_math.h"
 #include "runtime/growth/segments.h"
 #include "runtime/sim/calibrate/calibration.h"
 #include "runtime/sim/model/rod_section.h"
@@ -12,13 +13,13 @@ namespace liana {
 std::vector<double> pipe_radii(const Plant& plant, const std::vector<double>& young_radius, double exponent,
                                double leaf_radius) {
   std::vector<double> carried(plant.particles.size(), 0), radius(plant.particles.size(), 0);
-  const double leaf = std::pow(leaf_radius, exponent);
+  const double leaf = fixed::pow(leaf_radius, exponent);
   for (size_t i = plant.particles.size(); i-- > 0;) {
     const Particle& particle = plant.particles[i];
     const bool is_leaf = plant.branches[particle.branch.index()].kind == DomainKind::Leaf;
     if (!is_leaf) {
-      carried[i] = std::max(carried[i], std::pow(young_radius[i], exponent));
-      radius[i] = std::pow(carried[i], 1 / exponent);
+      carried[i] = std::max(carried[i], fixed::pow(young_radius[i], exponent));
+      radius[i] = fixed::pow(carried[i], 1 / exponent);
     }
     if (particle.parent.valid()) carried[particle.parent.index()] += is_leaf ? leaf : carried[i];
   }

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesher/base/fixed_math.h"
+#include "runtime/sim/model/rotation.h"
+
 namespace liana {
 namespace {
 
@@ -10,11 +13,11 @@ namespace {
 Quat turn(const Vec3& axis, double angle) {
   const double length = axis.norm();
   if (length < 1e-12) return Quat::Identity();
-  return Quat(Eigen::AngleAxisd(angle, axis / length));
+  return rotation_about(axis / length, angle);
 }
 
 double angle_between(const Vec3& a, const Vec3& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+  return fixed::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 }  // namespace
@@ -23,7 +26,7 @@ double angle_between(const Vec3& a, const Vec3& b) {
 Quat surface_adaption(const Vec3& forward, const Vec3& to_surface, double lean, double tau_dt,
                       const Vec3& fallback_axis) {
   const Vec3 axis = to_surface.cross(forward);
-  const double to_rest = std::acos(std::clamp(lean, -1.0, 1.0)) - angle_between(to_surface, forward);
+  const double to_rest = fixed::acos(std::clamp(lean, -1.0, 1.0)) - angle_between(to_surface, forward);
   const double angle = (to_surface.dot(forward) - lean) * tau_dt;
   const double limited = std::copysign(std::min(std::abs(angle), std::abs(to_rest)), to_rest);
   return turn(axis.norm() > 1e-6 ? axis : fallback_axis, limited);

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "mesher/base/error.h"
+#include "mesher/base/fixed_math.h"
 
 namespace liana {
 namespace {
@@ -114,7 +115,7 @@ ClosedMesh::ClosedMesh(const Mesh& source, bool may_be_open) : mesh_(welded(sour
     face_normals_.push_back(normal);
     for (int i = 0; i < 3; ++i) {
       const Vec3 u = p[(i + 1) % 3] - p[i], v = p[(i + 2) % 3] - p[i];
-      corner_normals_[t[i]] += normal * std::atan2(u.cross(v).norm(), u.dot(v));
+      corner_normals_[t[i]] += normal * fixed::atan2(u.cross(v).norm(), u.dot(v));
       edges.try_emplace(std::minmax(t[i], t[(i + 1) % 3]), Vec3::Zero()).first->second += normal;
     }
   }

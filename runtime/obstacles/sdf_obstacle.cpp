@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "mesher/base/error.h"
+#include "mesher/base/fixed_math.h"
 #include "mesher/base/parallel.h"
 
 namespace liana {
@@ -54,7 +55,7 @@ double geometric_voxel(const Mesh& mesh, double sheet) {
   }
   const double thickness = sheet > 0 ? sheet : 2 * std::abs(volume) / area;
   const double wanted = std::min((high - low).maxCoeff() / 128, thickness / 3);
-  const double affordable = std::cbrt(2 * kLeastBand * area / 1e5);
+  const double affordable = fixed::cbrt(2 * kLeastBand * area / 1e5);
   return std::max({2e-3, wanted, affordable});
 }
 

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesher/base/fixed_math.h"
+#include "runtime/sim/model/rotation.h"
+
 namespace liana {
 namespace {
 
@@ -21,15 +24,16 @@ Place along_keys(const std::vector<ObstacleMotion::Key>& keys, double time) {
   const ObstacleMotion::Key& last = *(next - 1);
   if (next == keys.end()) return {last.offset, last.rotation};
   const double t = (time - last.time) / (next->time - last.time), eased = t * t * (3 - 2 * t);
-  return {last.offset + eased * (next->offset - last.offset), last.rotation.slerp(eased, next->rotation)};
+  return {last.offset + eased * (next->offset - last.offset),
+          rotation_between(last.rotation, next->rotation, eased)};
 }
 
 Place place_at(const ObstacleMotion& motion, double time) {
   const double gone = std::clamp(time, motion.start, motion.stop) - motion.start;
   Place place = along_keys(motion.keys, time);
-  place.offset += gone * motion.velocity + std::sin(2 * kPi * gone / motion.period) * motion.swing;
+  place.offset += gone * motion.velocity + fixed::sin(2 * kPi * gone / motion.period) * motion.swing;
   const double angle = gone * motion.turn.norm();
-  if (angle > 0) place.rotation = Quat(Eigen::AngleAxisd(angle, motion.turn.normalized())) * place.rotation;
+  if (angle > 0) place.rotation = rotation_about(motion.turn.normalized(), angle) * place.rotation;
   return place;
 }
 
@@ -43,17 +47,15 @@ ObstaclePose ObstacleMotion::between(double from, double to) const {
   pose.position = pose.centre - now.rotation * pivot;
   if (to > from) {
     pose.velocity = (now.offset - before.offset) / (to - from);
-    const Eigen::AngleAxisd turned(now.rotation * before.rotation.conjugate());
-    const double angle = std::remainder(turned.angle(), 2 * kPi);
-    pose.angular_velocity = angle / (to - from) * turned.axis();
+    pose.angular_velocity = rotation_log(now.rotation * before.rotation.conjugate()).vector / (to - from);
   }
   return pose;
 }
 
 Quat rotation_from_degrees(const Vec3& degrees) {
   const Vec3 r = degrees * kPi / 180;
-  return Eigen::AngleAxisd(r.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(r.y(), Vec3::UnitY()) *
-         Eigen::AngleAxisd(r.x(), Vec3::UnitX());
+  return rotation_about(Vec3::UnitZ(), r.z()) * rotation_about(Vec3::UnitY(), r.y()) *
+         rotation_about(Vec3::UnitX(), r.x());
 }
 
 ObstacleMotion read_obstacle_motion(const TomlTable& table, const Vec3& pivot) {

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "mesher/base/fixed_math.h"
+
 namespace liana {
 namespace {
 
@@ -32,7 +34,7 @@ EmitterParameters read_emitter(const TomlTable& table) {
 
 /// m from an emitter's middle to its rim.
 double rim(const EmitterParameters& e) {
-  return e.shape == EmitterParameters::Shape::Disc ? e.radius : std::hypot(e.width, e.height) / 2;
+  return e.shape == EmitterParameters::Shape::Disc ? e.radius : fixed::hypot(e.width, e.height) / 2;
 }
 
 /// What an emitter blows through in a second and a half, and as much room around as the emitter is wide.

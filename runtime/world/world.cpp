@@ -8,6 +8,7 @@
 #include "materials/bake/bake_file.h"
 #include "materials/law/species_file.h"
 #include "mesher/base/error.h"
+#include "mesher/base/fixed_math.h"
 #include "mesher/base/hash.h"
 #include "mesher/base/nearest_word.h"
 #include "mesher/base/parallel.h"
@@ -210,6 +211,7 @@ void World::move_obstacles() {
 void World::step() {
   const PhaseSeconds before = report().seconds;
   start_events();
+  take_removals();
   lead_grabs();
   move_obstacles();
   const auto prepare = [&](size_t i) {
@@ -316,8 +318,8 @@ Camera World::camera() const {
     const Vec3 back = scene_.camera->eye - scene_.camera->target;
     camera.pivot = scene_.camera->target;
     camera.distance = back.norm();
-    camera.azimuth = std::atan2(back.x(), back.z());
-    camera.elevation = std::asin(back.y() / back.norm());
+    camera.azimuth = fixed::atan2(back.x(), back.z());
+    camera.elevation = fixed::asin(back.y() / back.norm());
     camera.field_of_view = scene_.camera->vertical_angle;
   } else {
     camera.frame(bounding_box(drawing()), 16.0 / 9);

@@ -123,6 +123,7 @@ class World final : public Simulation {
   std::optional<std::pair<size_t, ParticleId>> find(const ScenePoint& point) const;
   void start_events();
   void lead_grabs();
+  void take_removals();  // every cache of slots, once a step
   void break_what_is_overloaded();
   void take_off(size_t index, ParticleId particle);
   void let_rest(Inhabitant& part) const;

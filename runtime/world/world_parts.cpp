@@ -6,6 +6,7 @@
 
 #include "mesher/base/error.h"
 #include "mesher/base/nearest_word.h"
+#include "runtime/sim/model/topology.h"
 #include "runtime/world/world.h"
 
 namespace liana {
@@ -123,6 +124,16 @@ void World::cut(size_t plant, ParticleId particle) {
   ++cut_;
 }
 
+void World::take_removals() {
+  for (size_t i = 0; i < inhabitants_.size(); ++i) {
+    Inhabitant& self = *inhabitants_[i];
+    self.stepper.take(self.plant);
+    touching_.take(i, self.plant);
+    if (self.climber) self.climber->take(self.plant);
+    self.plant.removals.clear();
+  }
+}
+
 void World::break_what_is_overloaded() {
   const size_t count = inhabitants_.size();  // what falls now is looked at after its first step
   for (size_t i = 0; i < count; ++i) {
@@ -144,16 +155,13 @@ void World::break_what_is_overloaded() {
 void World::take_off(size_t index, ParticleId particle) {
   auto part = std::make_unique<Inhabitant>();
   Inhabitant& from = *inhabitants_[index];
-  TopologyChange change;
+  Remap change;
   DetachedFrom origin;
   part->plant = detach_subtree(from.plant, particle, &change, &origin);
   part->look = from.look;
   part->domains = from.domains;
   part->fallen = true;
   part->plant.name = fmt::format("{} part {}", from.plant.name, broken_ + shed_ + cut_);
-  from.stepper.follow(change);
-  touching_.follow(static_cast<uint32_t>(index), change);
-  if (from.climber) from.climber->follow(change);
   from.growing.clear();
   from.lay.clear();
   from.fractures.clear();

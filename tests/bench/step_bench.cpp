@@ -269,7 +269,7 @@ void change_one_branch(benchmark::State& state) {
     Plant piece;
     cut = std::min(cut, best_seconds(1, [&] {
                      add_carried(plant, at, id, -subtree_mass(plant, branch.particles[0]), carried);
-                     TopologyChange change;
+                     Remap change;
                      piece = detach_subtree(plant, branch.particles[0], &change);
                      for (size_t i = 0; i < carried.size(); ++i)
                        if (change.particles[i].valid()) carried[change.particles[i].index()] = carried[i];

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mesher/base/error.h"
+#include "mesher/base/fixed_math.h"
 #include "runtime/sim/calibrate/discrete_response.h"
 
 namespace liana {
@@ -70,13 +71,13 @@ bool recalibrate(Plant& plant, BranchId id, std::span<const double> carried, Hel
   const UnitOscillator target = wanted_oscillator(branch, plant.scheme);
   chain.build(plant, id, carried);
   const double scale =
-      std::clamp(target.stiffness / chain.lowest_eigenvalue(), std::exp(-most), std::exp(most));
+      std::clamp(target.stiffness / chain.lowest_eigenvalue(), fixed::exp(-most), fixed::exp(most));
   branch.stiffness_scale *= scale;
 
   // The step adds its own damping, so c* is not 2ξω; it is shared out as the bake shares that.
   const DomainMaterial& baked = branch.material;
   const double by_mass = baked.mass_damping;
-  const double by_stiffness = baked.stiffness_damping * std::pow(2 * kPi * baked.frequency, 2);
+  const double by_stiffness = baked.stiffness_damping * fixed::pow(2 * kPi * baked.frequency, 2);
   const double share = by_mass + by_stiffness > 0 ? by_mass / (by_mass + by_stiffness) : 0.5;
   for (const ParticleId p : branch.particles) {
     Particle& particle = plant.particles[p.index()];

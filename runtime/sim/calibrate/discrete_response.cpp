@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <complex>
 
+#include "mesher/base/fixed_math.h"
 #include "runtime/sim/step/generalized_alpha.h"
 
 namespace liana {
@@ -10,13 +11,19 @@ namespace {
 
 using Complex = std::complex<double>;
 
+/// Compilers' own libraries divide in ways of their own.
+Complex quotient(const Complex& a, const Complex& b) {
+  return a * std::conj(b) / std::norm(b);
+}
+
 UnitOscillator invert(double frequency, double damping_factor, double h, double rho_infinity) {
   const auto [alpha_m, alpha_f, gamma, beta, before] = GeneralizedAlpha(rho_infinity);
   const double omega = 2 * kPi * frequency, xi = damping_factor;
-  const Complex z = std::exp(Complex(-xi * omega, omega * std::sqrt(1 - xi * xi)) * h);
-  const Complex V = h * ((1 - gamma) + gamma * z) / (z - 1.0);
-  const Complex X = (h * V + h * h * ((0.5 - beta) + beta * z)) / (z - 1.0);
-  const Complex r = -((1 - alpha_m) * z + alpha_m) / ((1 - alpha_f) * z + alpha_f);  // c V + k X = r
+  const double turn = omega * std::sqrt(1 - xi * xi) * h;
+  const Complex z = fixed::exp(-xi * omega * h) * Complex(fixed::cos(turn), fixed::sin(turn));
+  const Complex V = h * quotient((1 - gamma) + gamma * z, z - 1.0);
+  const Complex X = quotient(h * V + h * h * ((0.5 - beta) + beta * z), z - 1.0);
+  const Complex r = -quotient((1 - alpha_m) * z + alpha_m, (1 - alpha_f) * z + alpha_f);  // c V + k X = r
   const double determinant = V.real() * X.imag() - V.imag() * X.real();
   UnitOscillator o;
   o.damping = (r.real() * X.imag() - r.imag() * X.real()) / determinant;
@@ -37,7 +44,7 @@ UnitOscillator discrete_oscillator(double frequency, double damping_factor, doub
   constexpr double kUnseen = 5e-5;
   const double least = -2 * kUnseen * std::sqrt(std::max(o.stiffness, 0.0));
   o.in_range = frequency <= fastest && xi == damping_factor && o.stiffness > 0 && o.damping >= least;
-  if (o.stiffness <= 0) o.stiffness = std::pow(2 * kPi * std::min(frequency, fastest), 2);
+  if (o.stiffness <= 0) o.stiffness = fixed::pow(2 * kPi * std::min(frequency, fastest), 2);
   o.damping = std::max(o.damping, 0.0);
   return o;
 }

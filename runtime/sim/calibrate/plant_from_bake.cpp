@@ -6,6 +6,8 @@
 #include "runtime/sim/calibrate/equilibrium.h"
 #include "runtime/sim/model/centreline.h"
 #include "runtime/sim/model/rod_section.h"
+#include "runtime/sim/model/rotation.h"
+#include "runtime/sim/model/topology.h"
 
 namespace liana {
 namespace {
@@ -90,6 +92,11 @@ void append_chain(Plant& plant, const Bake& bake, DomainId id, double spacing) {
                 .particles = {},
                 .length = domain.length,
                 .material = domain.material};
+  branch.lineage = child_lineage(
+      branch.parent.valid() ? plant.branches[branch.parent.index()].lineage : plant_lineage(plant.name, 0),
+      LineageKind::Branch, id.index());
+  plant.branches.push_back(std::move(branch));
+  const BranchId self(id.index());
   double mass_left = domain.mass;
   for (size_t i = 0; i < n; ++i) {
     const double s0 = h * static_cast<double>(i), s1 = i + 1 == n ? line.length() : s0 + h;
@@ -100,7 +107,6 @@ void append_chain(Plant& plant, const Bake& bake, DomainId id, double spacing) {
     const Station middle = line.at((s0 + s1) / 2);
 
     Particle particle;
-    particle.branch = BranchId(id.index());
     particle.half_length = (head - tail).norm() / 2;
     particle.half_width = middle.half_width;
     particle.half_thickness = middle.half_thickness;
@@ -109,9 +115,9 @@ void append_chain(Plant& plant, const Bake& bake, DomainId id, double spacing) {
     particle.inertia =
         rod_inertia(particle.mass, particle.half_length, middle.half_width, middle.half_thickness);
     if (i > 0)
-      particle.parent = branch.particles.back();
-    else if (branch.parent.valid())
-      particle.parent = nearest_particle(plant, plant.branches[branch.parent.index()], tail);
+      particle.parent = plant.branches[self.index()].particles.back();
+    else if (domain.parent.valid())
+      particle.parent = nearest_particle(plant, plant.branches[domain.parent.index()], tail);
 
     const Motion* parent = particle.parent.valid() ? &plant.motion[particle.parent.index()] : nullptr;
     Motion motion;
@@ -131,15 +137,12 @@ void append_chain(Plant& plant, const Bake& bake, DomainId id, double spacing) {
                             section.half_thickness, domain.stiffness_ratio),
                 stands_for);
 
-    branch.particles.push_back(ParticleId(plant.particles.size()));
-    plant.particles.push_back(particle);
-    plant.motion.push_back(motion);
+    append_particle(plant, self, particle, motion);
   }
-  plant.branches.push_back(std::move(branch));
 }
 
 void place(Plant& plant, const Vec3& position, double yaw) {
-  const Quat turn(Eigen::AngleAxisd(yaw, Vec3::UnitY()));
+  const Quat turn = rotation_about(Vec3::UnitY(), yaw);
   for (size_t i = 0; i < plant.particles.size(); ++i) {
     Motion& m = plant.motion[i];
     m.position = turn * m.position + position;

@@ -107,15 +107,9 @@ void Clearances::learn(const Plant& plant, size_t i, std::span<const SdfObstacle
   known_[i] = known;
 }
 
-void Clearances::follow(const TopologyChange& change) {
-  const auto keep = [&](auto& list) {
-    size_t kept = 0;
-    for (size_t i = 0; i < list.size() && i < change.particles.size(); ++i)
-      if (change.particles[i].valid()) list[kept++] = list[i];
-    list.resize(kept);
-  };
-  keep(known_);
-  keep(wait_);
+void Clearances::follow(const Remap& remap) {
+  remap.keep_particles(known_);
+  remap.keep_particles(wait_);
 }
 
 }  // namespace liana

@@ -9,7 +9,7 @@
 
 #include "runtime/obstacles/sdf_obstacle.h"
 #include "runtime/sim/model/plant.h"
-#include "runtime/sim/model/topology.h"
+#include "runtime/sim/model/remap.h"
 
 namespace liana {
 
@@ -30,7 +30,7 @@ class Clearances {
   /// Looks how much room the particle has, unless it was found to have none a few calls ago.
   void learn(const Plant& plant, size_t particle, std::span<const SdfObstacle* const> solids);
 
-  void follow(const TopologyChange& change);
+  void follow(const Remap& remap);
 
  private:
   struct Known {

@@ -28,8 +28,8 @@ class ContactStepper {
   ContactStepReport step(Plant& plant, const CollisionScene& scene, std::span<const Wrench> external,
                          std::vector<WorldSpring>& springs, const StepOptions& options);
 
-  /// The plant lost particles.
-  void follow(const TopologyChange& change) { contacts_.follow(change); }
+  /// Takes what was removed from the plant, as step() does first.
+  void take(const Plant& plant) { contacts_.take(plant); }
 
   Contacts& contacts() { return contacts_; }
 

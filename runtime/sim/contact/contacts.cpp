@@ -30,13 +30,12 @@ void Contacts::notice_new_particles(const Plant& plant, const CollisionScene& sc
   }
 }
 
-void Contacts::follow(const TopologyChange& change) {
-  size_t kept = 0;
-  for (size_t i = 0; i < exempt_.size() && i < change.particles.size(); ++i)
-    if (change.particles[i].valid()) exempt_[kept++] = exempt_[i];
-  exempt_.resize(kept);
-  clearances_.follow(change);
-  made_.clear();
+void Contacts::take(const Plant& plant) {
+  slots_.take(plant.removals, [&](const Remap& remap) {
+    remap.keep_particles(exempt_);
+    clearances_.follow(remap);
+    made_.clear();
+  });
 }
 
 // With the force k(t - x₁) - d v₁ of the end of the step, d = kΔt and k ≫ m/Δt², the step ends with
@@ -113,6 +112,7 @@ WorldSpring Contacts::spring(const Plant& plant, const Motion& motion, const Gap
 
 ContactReport Contacts::gather(const Plant& plant, const CollisionScene& scene,
                                std::vector<WorldSpring>& springs) {
+  take(plant);
   notice_new_particles(plant, scene);
   before_.swap(made_);
   made_.clear();
@@ -150,6 +150,7 @@ ContactReport Contacts::gather(const Plant& plant, const CollisionScene& scene,
 size_t Contacts::gather_missed(const Plant& after, std::span<const Motion> before,
                                const CollisionScene& scene, double tolerance,
                                std::vector<WorldSpring>& springs) {
+  slots_.check(after.removals);
   const size_t known = made_.size();
   const double dt = after.scheme.dt;
   for (Gap found : probes_.look(after, scene, 0, 0, clearances())) {
@@ -171,6 +172,7 @@ size_t Contacts::gather_missed(const Plant& after, std::span<const Motion> befor
 }
 
 ContactReport Contacts::measure(const Plant& plant, const CollisionScene& scene) {
+  take(plant);
   notice_new_particles(plant, scene);
   ContactReport report;
   report.exempt = std::count(exempt_.begin(), exempt_.end(), 1);

@@ -10,7 +10,6 @@
 #include "runtime/obstacles/contact_feel.h"
 #include "runtime/sim/contact/probes.h"
 #include "runtime/sim/model/plant.h"
-#include "runtime/sim/model/topology.h"
 
 namespace liana {
 
@@ -43,8 +42,9 @@ class Contacts {
   size_t gather_missed(const Plant& after, std::span<const Motion> before, const CollisionScene& scene,
                        double tolerance, std::vector<WorldSpring>& springs);
 
-  /// The plant lost particles: what is known of the others goes with them.
-  void follow(const TopologyChange& change);
+  /// Takes what was removed from the plant: what is known of the others moves with them. All of the above do
+  /// it first; call it where the plant's removals are cleared.
+  void take(const Plant& plant);
 
   /// Only looks: the report of the present state, with no springs.
   ContactReport measure(const Plant& plant, const CollisionScene& scene);
@@ -63,6 +63,7 @@ class Contacts {
   Clearances* clearances() { return options_.remember_clearances ? &clearances_ : nullptr; }
 
   ContactOptions options_;
+  SlotCache slots_;
   Probes probes_;
   Clearances clearances_;
   std::vector<uint8_t> exempt_;      // per particle

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesher/base/fixed_math.h"
 #include "runtime/sim/contact/ellipsoids.h"
 
 namespace liana {
@@ -35,7 +36,7 @@ double reach_across(const Shape& stem, const Vec3& n) {
   const Particle& p = stem.particle;
   if (p.half_width == p.half_thickness) return p.half_width;
   const Vec3 local = stem.motion.orientation.conjugate() * n;
-  return std::hypot(p.half_width * local.x(), p.half_thickness * local.z());
+  return fixed::hypot(p.half_width * local.x(), p.half_thickness * local.z());
 }
 
 Vec3 axis_of(const Shape& shape) {
@@ -83,8 +84,8 @@ Vec3 arm_to(const Shape& shape, const Vec3& at) {
     return shape.motion.orientation * Vec3(0, std::clamp(local.y(), -p.half_length, p.half_length), 0);
   local.z() = 0;
   return shape.motion.orientation *
-         Vec3(local / std::max(1.0, std::hypot(local.x() / std::max(kLeast, p.half_width),
-                                               local.y() / p.half_length)));
+         Vec3(local / std::max(1.0, fixed::hypot(local.x() / std::max(kLeast, p.half_width),
+                                                 local.y() / p.half_length)));
 }
 
 Meeting meet_as_ellipsoids(const Shape& a, const Shape& b, const Vec3* side, double far) {

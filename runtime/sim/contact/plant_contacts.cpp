@@ -62,20 +62,24 @@ void PlantContacts::find_moved(std::span<const Plant* const> plants) {
   if (moved_count_ > boxes_.size() / 3) moved_.assign(boxes_.size(), 1), moved_count_ = boxes_.size();
 }
 
-void PlantContacts::follow(uint32_t plant, const TopologyChange& change) {
-  std::erase_if(memory_, [&](Memory& m) {
-    for (uint64_t* name : {&m.a, &m.b}) {
-      if (*name >> 32 != plant) continue;
-      const ParticleId now = change.particles[*name & kNone];
-      if (!now.valid()) return true;
-      *name = uint64_t{plant} << 32 | now.index();
-    }
-    return false;
+void PlantContacts::take(size_t plant, const Plant& of) {
+  if (slots_.size() <= plant) slots_.resize(plant + 1);
+  slots_[plant].take(of.removals, [&](const Remap& remap) {
+    std::erase_if(memory_, [&](Memory& m) {
+      for (uint64_t* name : {&m.a, &m.b}) {
+        if (*name >> 32 != plant) continue;
+        const ParticleId now = remap.particles[*name & kNone];
+        if (!now.valid()) return true;
+        *name = uint64_t{plant} << 32 | now.index();
+      }
+      return false;
+    });
+    sizes_.clear();  // the list is made anew
   });
-  sizes_.clear();  // the list is made anew
 }
 
 void PlantContacts::forget(uint32_t plant) {
+  if (plant < slots_.size()) slots_.erase(slots_.begin() + plant);
   std::erase_if(memory_, [&](Memory& m) {
     for (uint64_t* name : {&m.a, &m.b}) {
       if (*name >> 32 == plant) return true;
@@ -159,6 +163,7 @@ PlantContactReport PlantContacts::gather(std::span<const Plant* const> plants,
                                          std::span<std::vector<WorldSpring>* const> springs) {
   require(springs.size() == plants.size(), "every plant has a list of springs");
   PlantContactReport report;
+  for (size_t k = 0; k < plants.size(); ++k) take(k, *plants[k]);
   look_at(plants);
   find_moved(plants);
   if (moved_count_ > 0) list_moved(plants);

@@ -13,7 +13,6 @@
 #include "runtime/sim/contact/box_pairs.h"
 #include "runtime/sim/contact/meeting.h"
 #include "runtime/sim/model/plant.h"
-#include "runtime/sim/model/topology.h"
 
 namespace liana {
 
@@ -44,8 +43,9 @@ class PlantContacts {
   PlantContactReport gather(std::span<const Plant* const> plants,
                             std::span<std::vector<WorldSpring>* const> springs);
 
-  /// plants[plant] lost particles: what is known of the others goes with them.
-  void follow(uint32_t plant, const TopologyChange& change);
+  /// Takes what was removed from plants[plant]: what is known of the others moves with them. gather() does it
+  /// first; call it where the plant's removals are cleared.
+  void take(size_t plant, const Plant& of);
   /// plants[plant] is gone, and those after it moved up.
   void forget(uint32_t plant);
 
@@ -81,12 +81,13 @@ class PlantContacts {
              std::span<std::vector<WorldSpring>* const> springs, PlantContactReport& report);
 
   PlantContactOptions options_;
-  BoxPairs tree_;                // over listed_
-  std::vector<size_t> sizes_;    // of the plants that the list was made for
-  std::vector<Body> bodies_;     // by plant and particle
-  std::vector<Kin> kin_;         // of bodies, for the list
-  std::vector<FlatBox> boxes_;   // of now, with the way of one step
-  std::vector<FlatBox> listed_;  // what the list looks at: boxes with a margin
+  std::vector<SlotCache> slots_;  // per plant
+  BoxPairs tree_;                 // over listed_
+  std::vector<size_t> sizes_;     // of the plants that the list was made for
+  std::vector<Body> bodies_;      // by plant and particle
+  std::vector<Kin> kin_;          // of bodies, for the list
+  std::vector<FlatBox> boxes_;    // of now, with the way of one step
+  std::vector<FlatBox> listed_;   // what the list looks at: boxes with a margin
   std::vector<Candidate> candidates_;
   std::vector<Memory> memory_, next_memory_;
   std::vector<uint8_t> moved_;  // per body

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesher/base/fixed_math.h"
 #include "runtime/sim/step/joints.h"
 
 namespace liana {
@@ -47,7 +48,7 @@ double joint_stress(const Plant& plant, ParticleId id) {
   // c/I of an ellipse is 4/(area × the half axis that it bends over); the largest of a linear stress on it
   // is the root of the squares.
   const double about_x = 4 * moment.x() / (area * b), about_z = 4 * moment.z() / (area * a);
-  return std::hypot(about_x, about_z) + std::abs(axial) / area;
+  return fixed::hypot(about_x, about_z) + std::abs(axial) / area;
 }
 
 double joint_energy(const Plant& plant, ParticleId id) {

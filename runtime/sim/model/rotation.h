@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "mesher/base/fixed_math.h"
 #include "mesher/base/types.h"
 
 namespace liana {
@@ -14,6 +15,12 @@ inline Mat3 skew(const Vec3& v) {
   return m;
 }
 
+/// The rotation by `angle` (rad) about a unit axis.
+inline Quat rotation_about(const Vec3& axis, double angle) {
+  const double s = fixed::sin(angle / 2);
+  return {fixed::cos(angle / 2), s * axis.x(), s * axis.y(), s * axis.z()};
+}
+
 /// The rotation by |v| radians about v. Unit to rounding.
 inline Quat rotation_exp(const Vec3& v) {
   const double x = v.squaredNorm() / 4;  // half the angle, squared
@@ -23,8 +30,8 @@ inline Quat rotation_exp(const Vec3& v) {
     s = 0.5 * (1 - x / 6 * (1 - x / 20 * (1 - x / 42 * (1 - x / 72 * (1 - x / 110)))));
   } else {
     const double half = std::sqrt(x);
-    c = std::cos(half);
-    s = std::sin(half) / (2 * half);
+    c = fixed::cos(half);
+    s = fixed::sin(half) / (2 * half);
   }
   return {c, s * v.x(), s * v.y(), s * v.z()};
 }
@@ -52,8 +59,13 @@ inline RotationLog rotation_log(const Quat& q) {
     const double h2 = f * f * s2;
     return {2 * f * v, 1.0 / 12 + h2 / 180 + h2 * h2 / 1890 + h2 * h2 * h2 / 18900};
   }
-  const double s = std::sqrt(s2), half = std::atan2(s, w);
+  const double s = std::sqrt(s2), half = fixed::atan2(s, w);
   return {(2 * half / s) * v, (1 - half * w / s) / (4 * half * half)};
+}
+
+/// From one rotation (share 0) to another (share 1) the short way, at a steady rate.
+inline Quat rotation_between(const Quat& from, const Quat& to, double share) {
+  return from * rotation_exp(share * rotation_log(from.conjugate() * to).vector);
 }
 
 }  // namespace liana

@@ -5,8 +5,8 @@
 
 namespace liana {
 
-/// XXH3 over the numbers of every particle's Motion, in order, without padding. Chain over plants with
-/// `seed`.
+/// The sum of XXH3 over the numbers of every particle's Motion, each with its lineage (its slot in plants
+/// without): the same whatever the order of the arrays. Chain over plants with `seed`.
 uint64_t state_hash(const Plant& plant, uint64_t seed = 0);
 
 }  // namespace liana

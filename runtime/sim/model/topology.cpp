@@ -33,6 +33,10 @@ std::vector<ParticleId> marked_ids(const std::vector<char>& marked, ParticleId r
   return ids;
 }
 
+bool has_lineage(const Plant& plant) {
+  return plant.lineage.size() == plant.particles.size();
+}
+
 // The taken particles as a plant: ids by their order.
 Plant copy_of(const Plant& plant, std::span<const ParticleId> taken, DetachedFrom& from) {
   Plant piece;
@@ -60,6 +64,7 @@ Plant copy_of(const Plant& plant, std::span<const ParticleId> taken, DetachedFro
       particle.parent = now[particle.parent.index()];
     piece.particles.push_back(particle);
     piece.motion.push_back(plant.motion[id.index()]);
+    if (has_lineage(plant)) piece.lineage.push_back(plant.lineage[id.index()]);
   }
   for (WorldSpring anchor : plant.anchors) {
     anchor.particle = now[anchor.particle.index()];
@@ -97,8 +102,9 @@ void let_fly(Plant& piece) {
 }
 
 // Takes the marked particles away, of which `root` is the first.
-TopologyChange remove_marked(Plant& plant, ParticleId root, const std::vector<char>& gone) {
-  TopologyChange change;
+const Remap& remove_marked(Plant& plant, ParticleId root, const std::vector<char>& gone) {
+  Remap change;
+  const bool known = has_lineage(plant);
   const size_t count = plant.particles.size(), branch_count = plant.branches.size();
   change.particles.resize(count);
   change.branches.resize(branch_count);
@@ -129,7 +135,7 @@ TopologyChange remove_marked(Plant& plant, ParticleId root, const std::vector<ch
     plant.branches[id.index()] = std::move(branch);
   }
   plant.branches.resize(branches);
-  change.shortened = change.branches[cut.index()];
+  if (change(cut).valid()) change.shortened.push_back(change(cut));
 
   // Particles before the first that goes stay where they are.
   for (size_t i = root.index(); i < count; ++i) {
@@ -139,7 +145,9 @@ TopologyChange remove_marked(Plant& plant, ParticleId root, const std::vector<ch
     if (particle.parent.valid()) particle.parent = change.particles[particle.parent.index()];
     particle.branch = change.branches[particle.branch.index()];
     plant.motion[to] = plant.motion[i];
+    if (known) plant.lineage[to] = plant.lineage[i];
   }
+  plant.lineage.resize(known ? kept : 0);
   plant.particles.resize(kept);
   plant.motion.resize(kept);
 
@@ -147,10 +155,24 @@ TopologyChange remove_marked(Plant& plant, ParticleId root, const std::vector<ch
     anchor.particle = change.particles[anchor.particle.index()];
     return !anchor.particle.valid();
   });
-  return change;
+  plant.removals.add(std::move(change));
+  return plant.removals.last();
 }
 
 }  // namespace
+
+ParticleId append_particle(Plant& plant, BranchId id, const Particle& particle, const Motion& motion) {
+  Branch& branch = plant.branches[id.index()];
+  const ParticleId self(plant.particles.size());
+  if (plant.lineage.size() == plant.particles.size() && (branch.lineage.valid() || !plant.lineage.empty()))
+    plant.lineage.push_back(child_lineage(branch.lineage, LineageKind::Segment, branch.born));
+  ++branch.born;
+  plant.particles.push_back(particle);
+  plant.particles.back().branch = id;
+  plant.motion.push_back(motion);
+  branch.particles.push_back(self);
+  return self;
+}
 
 BranchId append_branch(Plant& plant, Branch branch, ParticleId at, std::span<const Particle> particles,
                        std::span<const Motion> motion) {
@@ -159,24 +181,22 @@ BranchId append_branch(Plant& plant, Branch branch, ParticleId at, std::span<con
   const BranchId id(plant.branches.size());
   branch.parent = at.valid() ? plant.particles[at.index()].branch : BranchId();
   branch.particles.clear();
-  for (size_t i = 0; i < particles.size(); ++i) {
-    const ParticleId self(plant.particles.size());
-    plant.particles.push_back(particles[i]);
-    plant.particles.back().parent = i > 0 ? branch.particles.back() : at;
-    plant.particles.back().branch = id;
-    plant.motion.push_back(motion[i]);
-    branch.particles.push_back(self);
-  }
+  branch.born = 0;
   plant.branches.push_back(std::move(branch));
+  for (size_t i = 0; i < particles.size(); ++i) {
+    Particle particle = particles[i];
+    particle.parent = i > 0 ? plant.branches.back().particles.back() : at;
+    append_particle(plant, id, particle, motion[i]);
+  }
   return id;
 }
 
-TopologyChange remove_subtree(Plant& plant, ParticleId root) {
+const Remap& remove_subtree(Plant& plant, ParticleId root) {
   remember_shades(plant);
   return remove_marked(plant, root, mark_subtree(plant, root));
 }
 
-Plant detach_subtree(Plant& plant, ParticleId root, TopologyChange* change, DetachedFrom* from) {
+Plant detach_subtree(Plant& plant, ParticleId root, Remap* change, DetachedFrom* from) {
   remember_shades(plant);
   const std::vector<char> marked = mark_subtree(plant, root);
   DetachedFrom origin;
@@ -189,8 +209,8 @@ Plant detach_subtree(Plant& plant, ParticleId root, TopologyChange* change, Deta
           length_of(piece, piece.branches[b].particles) / length_of(plant, whole.particles);
   }
   let_fly(piece);
-  TopologyChange moved = remove_marked(plant, root, marked);
-  if (change) *change = std::move(moved);
+  const Remap& moved = remove_marked(plant, root, marked);
+  if (change) *change = moved;
   if (from) *from = std::move(origin);
   return piece;
 }

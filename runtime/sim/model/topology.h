@@ -11,12 +11,9 @@
 
 namespace liana {
 
-/// Where things went: old id → new id, invalid for what is gone.
-struct TopologyChange {
-  std::vector<ParticleId> particles;
-  std::vector<BranchId> branches;
-  BranchId shortened;  ///< new id of the branch that was cut through; invalid if none kept a lower part
-};
+/// Appends one particle to the end of a branch, with the lineage that follows from the branch's.
+/// particle.parent must be set.
+ParticleId append_particle(Plant& plant, BranchId branch, const Particle& particle, const Motion& motion);
 
 /// A chain that grows from `at`: fills in parent, branch and ids. particles[i] is held by the one before, the
 /// first by `at` (invalid: by the world). branch.particles is set here. Both arrays root to tip, of equal
@@ -26,8 +23,8 @@ BranchId append_branch(Plant& plant, Branch branch, ParticleId at, std::span<con
 
 /// Takes `root` and all that grows from it away, with its anchors. Branches that lose all particles go; the
 /// one that is cut through keeps its lower part, its length shortened. What remains keeps its order and moves
-/// up in the arrays.
-TopologyChange remove_subtree(Plant& plant, ParticleId root);
+/// up in the arrays. Returns where things went, which plant.removals keeps as its last entry.
+const Remap& remove_subtree(Plant& plant, ParticleId root);
 
 /// The same, and what was taken is returned as a plant of its own that nothing holds: it falls as it moved,
 /// keeps its joints and anchors, and its swinging is damped as before, its flight is not. For each of its
@@ -36,8 +33,7 @@ struct DetachedFrom {
   std::vector<ParticleId> particles;
   std::vector<BranchId> branches;
 };
-Plant detach_subtree(Plant& plant, ParticleId root, TopologyChange* change = nullptr,
-                     DetachedFrom* from = nullptr);
+Plant detach_subtree(Plant& plant, ParticleId root, Remap* change = nullptr, DetachedFrom* from = nullptr);
 
 /// Keeps carried_masses() up to date: `mass` (kg, negative for what is taken away) was added where it grows
 /// from particle `at`, in a branch other than `branch`'s own. In the time of the path to the root.

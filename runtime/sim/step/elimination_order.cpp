@@ -42,6 +42,8 @@ void EliminationOrder::divide() {
   part_.resize(count);
   slot_.assign(count + 1, 0);
   next_.assign(count, kNone);
+  younger_.assign(count, kNone);
+  youngest_.assign(count, kNone);
   waiting_.assign(count + 1, 0);
   uint32_t deepest = 0;
   for (uint32_t i = 0; i < count; ++i) {
@@ -115,6 +117,15 @@ EliminationOrder::Part EliminationOrder::pack(std::span<const uint32_t> members)
     if (inside(parent_[i])) ++waiting_[parent_[i]];
     bottom = std::min(bottom, depth_[i]);
   }
+  // Small subtrees first, as when they are in parts of their own; else in the order of the arrays.
+  for (const bool small : {true, false}) {
+    for (const uint32_t i : members) {
+      if (!inside(parent_[i]) || (size_[i] <= kLargestSubtree) != small) continue;
+      uint32_t& last = youngest_[parent_[i]];
+      if (last != kNone) younger_[last] = i, ++waiting_[i];
+      last = i;
+    }
+  }
   for (const uint32_t i : members) {
     if (waiting_[i] > 0) continue;
     ready(i);
@@ -130,6 +141,7 @@ EliminationOrder::Part EliminationOrder::pack(std::span<const uint32_t> members)
         slot_[i] = slot;
         pack.slot[pack.count] = slot++;
         pack.self[pack.count++] = i;
+        if (const uint32_t next = younger_[i]; next != kNone && --waiting_[next] == 0) ready(next);
       }
     }
     for (uint32_t k = 0; k < pack.count; ++k) {
@@ -140,6 +152,11 @@ EliminationOrder::Part EliminationOrder::pack(std::span<const uint32_t> members)
     done += pack.count;
     packs_.push_back(pack);
   }
+  for (const uint32_t i : members) {
+    if (is_top || inside(parent_[i])) continue;
+    next_[i] = block_slots_++;
+    handovers_.push_back({next_[i], slot_[parent_[i]]});
+  }
   for (lanes::Pack& pack : std::span(packs_).subspan(first_pack)) {
     for (uint32_t k = 0; k < 4; ++k) {
       if (k >= pack.count) {
@@ -149,9 +166,7 @@ EliminationOrder::Part EliminationOrder::pack(std::span<const uint32_t> members)
       }
       const uint32_t parent = parent_[pack.self[k]];
       pack.parent[k] = pack.up[k] = slot_[parent];
-      if (is_top || inside(parent)) continue;
-      pack.up[k] = block_slots_++;
-      handovers_.push_back({pack.up[k], pack.parent[k]});
+      if (!is_top && !inside(parent)) pack.up[k] = next_[pack.self[k]];
     }
   }
   return {first_pack, static_cast<uint32_t>(packs_.size()), first_handover};

@@ -31,6 +31,8 @@ class EliminationOrder {
 
   /// Packs of up to four particles that do not depend on each other, children before parents. Within a part
   /// the farthest from the root go first, which needs the fewest packs that are possible ([Hu 1961]).
+  /// Siblings go in an order of their own, so that what is summed in their parent does not depend, to the
+  /// last bit, on what else is eliminated with them: trees of one plant do not see each other.
   std::span<const lanes::Pack> packs() const { return packs_; }
   std::span<const Part> parts() const { return parts_; }
   Part top() const { return top_; }
@@ -61,7 +63,8 @@ class EliminationOrder {
 
   std::vector<uint32_t> parent_;  // particles() for a root
   std::vector<uint32_t> size_, depth_, waiting_, next_, part_, slot_, members_, start_;
-  std::vector<uint32_t> first_, last_;  // per depth: queue of particles whose children are all done
+  std::vector<uint32_t> younger_, youngest_;  // the sibling that hands on next; the last so far of a parent
+  std::vector<uint32_t> first_, last_;        // per depth: queue of particles whose children are all done
   std::vector<lanes::Pack> packs_;
   std::vector<Part> parts_;
   Part top_{};

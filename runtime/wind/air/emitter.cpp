@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "mesher/base/error.h"
+#include "mesher/base/fixed_math.h"
 #include "mesher/base/random.h"
 
 namespace liana {
@@ -48,7 +49,7 @@ double Emitter::gust_at(double time) const {
   double sum = 0;
   const double faster[3] = {1, 1.618034, 2.732051};
   for (int i = 0; i < 3; ++i)
-    sum += std::sin(2 * kPi * faster[i] * time / parameters_.gust_period + gust_phase_[i]);
+    sum += fixed::sin(2 * kPi * faster[i] * time / parameters_.gust_period + gust_phase_[i]);
   return std::max(0.0, 1 + parameters_.gust * std::sqrt(2.0 / 3) * sum);
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "runtime/sim/model/rotation.h"
+
 namespace liana {
 
 MovingWalls::MovingWalls(const Vec3& domain_low, double spacing, double reach,
@@ -21,7 +23,7 @@ void MovingWalls::place(double before) {
     const ObstaclePose& pose = wall.obstacle->pose();
     const double angle = -before * pose.angular_velocity.norm();
     const Quat back =
-        angle == 0 ? Quat::Identity() : Quat(Eigen::AngleAxisd(angle, pose.angular_velocity.normalized()));
+        angle == 0 ? Quat::Identity() : rotation_about(pose.angular_velocity.normalized(), angle);
     const Vec3 centre = pose.centre - before * pose.velocity;
     const Vec3 position = centre + back * (pose.position - pose.centre) - domain_low_;
     const Mat3 to_mesh = (back * pose.rotation).toRotationMatrix().transpose();

@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cmath>
 
+#include "mesher/base/fixed_math.h"
+
 namespace liana {
 namespace {
 
@@ -28,7 +30,7 @@ Vec3 mean_velocity(const TimeScheme& scheme, const Vec3& before, const Vec3& aft
 
 std::span<AirBody> PlantCoupling::set_bodies(std::span<const PlantInWind> plants) {
   bodies_.clear(), body_of_.clear();
-  const double least = kThick * std::pow(air_.options().spacing, 3);
+  const double least = kThick * fixed::pow(air_.options().spacing, 3);
   for (size_t p = 0; p < plants.size(); ++p) {
     const Plant& plant = *plants[p].plant;
     for (size_t i = 0; i < plant.particles.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "mesher/base/error.h"
+#include "mesher/base/fixed_math.h"
 #include "runtime/wind/air/sph_kernels.h"
 
 namespace liana {
@@ -22,7 +23,7 @@ double lattice_density() {
   double sum = 0;
   for (int x = -1; x <= 1; ++x)
     for (int y = -1; y <= 1; ++y)
-      for (int z = -1; z <= 1; ++z) sum += std::pow(4 - (x * x + y * y + z * z), 3);
+      for (int z = -1; z <= 1; ++z) sum += fixed::pow(4 - (x * x + y * y + z * z), 3);
   return poly6_factor(2) * sum;
 }
 
@@ -46,7 +47,7 @@ SphAir::SphAir(const AirOptions& o, const AirWalls* walls, const MovingWalls* mo
         Error::Kind::Input, "the air's domain, spacing, density, speed of sound or viscosity is out of range",
         "positive finite numbers, a domain with low < high in every axis and less than 100000 spacings long");
   support_ = 2 * o.spacing;
-  mass_ = o.rest_density * std::pow(o.spacing, 3) / lattice_density();
+  mass_ = o.rest_density * fixed::pow(o.spacing, 3) / lattice_density();
   longest_step_ = kCourant * support_ / o.sound_speed;
   if (o.viscosity > 0)
     longest_step_ = std::min(longest_step_, kViscous * support_ * support_ * o.rest_density / o.viscosity);

@@ -9,15 +9,16 @@
 
 #include <algorithm>
 
+#include "mesher/base/fixed_math.h"
 #include "mesher/base/types.h"
 
 namespace liana {
 
 inline double poly6_factor(double h) {
-  return 315 / (64 * kPi * std::pow(h, 9));
+  return 315 / (64 * kPi * fixed::pow(h, 9));
 }
 inline double spiky_factor(double h) {
-  return 45 / (kPi * std::pow(h, 6));
+  return 45 / (kPi * fixed::pow(h, 6));
 }
 
 /// Integrals of the three kernels over the half space beyond a plane at distance d = q h, 0 <= q; a wall

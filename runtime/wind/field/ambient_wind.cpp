@@ -4,15 +4,16 @@
 #include <cmath>
 
 #include "mesher/base/error.h"
+#include "mesher/base/fixed_math.h"
 #include "mesher/base/random.h"
 
 namespace liana {
 
 double von_karman_along(double n) {
-  return 4 * n / std::pow(1 + 70.8 * n * n, 5.0 / 6);
+  return 4 * n / fixed::pow(1 + 70.8 * n * n, 5.0 / 6);
 }
 double von_karman_across(double n) {
-  return 4 * n * (1 + 755.2 * n * n) / std::pow(1 + 283.2 * n * n, 11.0 / 6);
+  return 4 * n * (1 + 755.2 * n * n) / fixed::pow(1 + 283.2 * n * n, 11.0 / 6);
 }
 
 namespace {
@@ -23,10 +24,10 @@ constexpr double kFinest = 10;  // turns/m across the wind: finer than a leaf is
 /// Share of the variance between two values of n: ∫ f S/σ² d(ln f), Simpson's rule.
 double variance_between(double (*spectrum)(double), double n0, double n1) {
   constexpr int kParts = 16;
-  const double step = std::log(n1 / n0) / kParts;
+  const double step = fixed::log(n1 / n0) / kParts;
   double sum = 0;
   for (int i = 0; i <= kParts; ++i)
-    sum += (i == 0 || i == kParts ? 1 : i % 2 == 1 ? 4 : 2) * spectrum(n0 * std::exp(i * step));
+    sum += (i == 0 || i == kParts ? 1 : i % 2 == 1 ? 4 : 2) * spectrum(n0 * fixed::exp(i * step));
   return sum * step / 3;
 }
 
@@ -49,14 +50,14 @@ AmbientWind::AmbientWind(const AmbientParameters& p) : parameters_(p) {
 
   Random random(p.seed, "wind/ambient");
   const double sigma = p.intensity * speed, per_length = speed / p.length_scale;
-  const double step = std::pow(kHighest / kLowest, 1.0 / p.frequencies);
+  const double step = fixed::pow(kHighest / kLowest, 1.0 / p.frequencies);
   for (unsigned i = 0; i < p.frequencies; ++i) {
-    const double n0 = kLowest * std::pow(step, i), n1 = n0 * step;
+    const double n0 = kLowest * fixed::pow(step, i), n1 = n0 * step;
     // A cosine has half its squared amplitude as variance.
     const double a = sigma * std::sqrt(2 * variance_between(von_karman_along, n0, n1) / p.waves);
     const double b = sigma * std::sqrt(2 * variance_between(von_karman_across, n0 / 2, n1 / 2) / p.waves);
     for (unsigned wave = 0; wave < p.waves; ++wave) {
-      const double frequency = n0 * std::pow(step, random.uniform()) * per_length;
+      const double frequency = n0 * fixed::pow(step, random.uniform()) * per_length;
       const double scale = p.coherence_decay * frequency / (2 * kPi * speed);
       const double y = random.normal(), z = random.normal(), over = std::abs(random.normal());
       Vec3 across = scale / std::max(over, 1e-9) * (y * side + z * up);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesher/base/fixed_math.h"
+
 namespace liana {
 
 ShelteredWind::ShelteredWind(const WindField& open, std::vector<const SdfObstacle*> solids,
@@ -11,7 +13,7 @@ ShelteredWind::ShelteredWind(const WindField& open, std::vector<const SdfObstacl
       solids_(std::move(solids)),
       ground_height_(ground_height),
       parameters_(parameters),
-      outermost_(std::log1p(parameters.layer / parameters.roughness)) {}
+      outermost_(fixed::log1p(parameters.layer / parameters.roughness)) {}
 
 void ShelteredWind::slow(Vec3& wind, double distance, const Vec3& normal) const {
   const double layer = parameters_.layer, roughness = parameters_.roughness;
@@ -19,7 +21,7 @@ void ShelteredWind::slow(Vec3& wind, double distance, const Vec3& normal) const 
   const double inside = std::max(distance, 0.0);
   const double into = wind.dot(normal);
   if (into < 0) wind -= (1 - inside / layer) * into * normal;
-  wind *= std::log1p(inside / roughness) / outermost_;
+  wind *= fixed::log1p(inside / roughness) / outermost_;
 }
 
 Vec3 ShelteredWind::velocity(const Vec3& position, double time) const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesher/base/error.h"
+#include "mesher/base/fixed_math.h"
 #include "mesher/base/random.h"
 
 namespace liana {
@@ -30,8 +31,9 @@ SteadyGustWind::SteadyGustWind(const GustParameters& p) : mean_(p.mean) {
   std::vector<double> frequencies, root_power;
   for (unsigned i = 0; i < p.waves; ++i) {
     const double place = (i + random.uniform()) / p.waves;
-    frequencies.push_back(p.low_frequency * std::pow(p.high_frequency / p.low_frequency, place));
-    const double ratio = frequencies.back() / p.peak_frequency, share = ratio / std::pow(1 + ratio, 5.0 / 3);
+    frequencies.push_back(p.low_frequency * fixed::pow(p.high_frequency / p.low_frequency, place));
+    const double ratio = frequencies.back() / p.peak_frequency,
+                 share = ratio / fixed::pow(1 + ratio, 5.0 / 3);
     power += share;
     root_power.push_back(std::sqrt(share));
   }
@@ -41,7 +43,7 @@ SteadyGustWind::SteadyGustWind(const GustParameters& p) : mean_(p.mean) {
     const double upward = random.normal(), sideward = random.normal();  // in this order with every compiler
     const Vec3 oblique = frequencies[i] / speed * (along + p.spread * (sideward * side + upward * up));
     const double turn = random.uniform(0, 2 * kPi);
-    const Vec3 crosswise = p.across * std::sqrt(2.0) * (std::cos(turn) * side + std::sin(turn) * up);
+    const Vec3 crosswise = p.across * std::sqrt(2.0) * (fixed::cos(turn) * side + fixed::sin(turn) * up);
     waves_.add(oblique, frequencies[i], random.uniform(), scale * root_power[i] * (along + crosswise));
   }
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "mesher/base/fixed_math.h"
 #include "runtime/sim/step/generalized_alpha.h"
 
 namespace liana {
@@ -21,7 +22,7 @@ double drag_factor(const Plant& plant, ParticleId id, const Vec3& relative, cons
   const double area = projected_area(particle, orientation.conjugate() * (relative / speed));
   const bool leaf = plant.branches[particle.branch.index()].kind == DomainKind::Leaf;
   if (leaf && speed > options.leaf_yield_speed)
-    speed *= std::pow(speed / options.leaf_yield_speed, options.leaf_vogel_exponent);
+    speed *= fixed::pow(speed / options.leaf_yield_speed, options.leaf_vogel_exponent);
   return options.air_density / 2 * (leaf ? options.leaf_coefficient : options.stem_coefficient) * area *
          speed;
 }

@@ -1,9 +1,14 @@
 #include <gtest/gtest.h>
 
+#include <map>
+#include <set>
+
 #include "mesher/base/error.h"
+#include "mesher/base/random.h"
 #include "runtime/obstacles/box_mesh.h"
 #include "runtime/sim/calibrate/discrete_response.h"
 #include "runtime/sim/model/state_hash.h"
+#include "runtime/sim/model/topology.h"
 #include "runtime/sim/step/joints.h"
 #include "runtime/wind/field/sheltered_wind.h"
 #include "runtime/wind/field/steady_gust_wind.h"
@@ -123,9 +128,89 @@ TEST(Climber, FastGrowthIsCutIntoSmallSteps) {
 }
 
 void cut(ClimberScene& scene, ParticleId at) {
-  const TopologyChange change = remove_subtree(scene.plant, at);
-  scene.climber.follow(change);
-  scene.stepper.follow(change);
+  const Remap change = remove_subtree(scene.plant, at);
+}
+
+/// Of every particle: the first shoot that it grows from, by its lineage.
+std::vector<uint64_t> trees_of(const Plant& plant) {
+  std::vector<uint64_t> tree(plant.particles.size());
+  for (size_t i = 0; i < tree.size(); ++i) {
+    const ParticleId parent = plant.particles[i].parent;
+    tree[i] = parent.valid() ? tree[parent.index()] : plant.lineage[i].value;
+  }
+  return tree;
+}
+
+/// All numbers of a tree's particles and branches, by lineage.
+std::map<uint64_t, std::vector<double>> numbers_of(const Plant& plant, uint64_t tree) {
+  std::map<uint64_t, std::vector<double>> numbers;
+  const std::vector<uint64_t> trees = trees_of(plant);
+  for (size_t i = 0; i < trees.size(); ++i) {
+    if (trees[i] != tree) continue;
+    const Particle& p = plant.particles[i];
+    const Motion& m = plant.motion[i];
+    const Joint& j = p.joint;
+    const Branch& b = plant.branches[p.branch.index()];
+    std::vector<double>& n = numbers[plant.lineage[i].value];
+    for (const double x : {p.half_length, p.half_width, p.half_thickness, p.mass, p.mass_damping,
+                           p.stiffness_damping, b.length, b.stiffness_scale, b.material.frequency})
+      n.push_back(x);
+    for (const Vec3& v :
+         {m.position, m.velocity, m.angular_velocity, m.acceleration, m.angular_acceleration, p.inertia,
+          j.on_parent, j.on_self, j.shear_stiffness, j.bend_stiffness, j.rest_force, j.rest_moment})
+      n.insert(n.end(), v.data(), v.data() + 3);
+    for (const Quat& q : {m.orientation, j.rest}) n.insert(n.end(), q.coeffs().data(), q.coeffs().data() + 4);
+  }
+  return numbers;
+}
+
+// One of four first shoots is cut, low or high. The others, which never met what was cut off, do not know to
+// the last bit.
+TEST(Climber, LeavingOutACutLeavesWhatNeverMetItBitEqual) {
+  ClimberParameters parameters = sparse();
+  parameters.first_shoots = 4;
+  parameters.fan = 1.2;
+  parameters.branching.room = 0.04;
+  parameters.max_particles = 100'000;  // which all of them would share
+  GustParameters gusts;
+  gusts.mean = {1, 0, -0.5};
+  const SteadyGustWind wind(gusts);
+  for (const size_t part : {3, 6}) {  // of nine
+    ClimberScene whole(parameters), cut_scene(parameters);
+    whole.growth_speed = cut_scene.growth_speed = 2;
+    whole.run(6, &wind), cut_scene.run(6, &wind);
+    const std::vector<ParticleId>& shoot = whole.plant.branches[0].particles;
+    const std::vector<uint64_t> before = trees_of(whole.plant);
+    const uint64_t hurt = before[shoot[0].index()];
+    const std::set<uint64_t> trees(before.begin(), before.end());
+    ASSERT_EQ(trees.size(), 4u);
+    cut(cut_scene, shoot[shoot.size() * part / 9]);
+    std::set<uint64_t> met = {hurt};
+    const size_t at_start = cut_scene.plant.particles.size();
+    for (int i = 0; i < 40; ++i) {
+      whole.run(0.25, &wind), cut_scene.run(0.25, &wind);
+      // Who is near to what one run has of the hurt tree and the other has not: buds ask within 2.5 rooms.
+      const std::vector<uint64_t> tree = trees_of(whole.plant);
+      const std::set<LineageId> left(cut_scene.plant.lineage.begin(), cut_scene.plant.lineage.end());
+      for (size_t a = 0; a < tree.size(); ++a)
+        for (size_t b = 0; tree[a] == hurt && !left.contains(whole.plant.lineage[a]) && b < tree.size(); ++b)
+          if ((whole.plant.motion[a].position - whole.plant.motion[b].position).norm() < 0.15)
+            met.insert(tree[b]);
+    }
+    EXPECT_LT(at_start, 384u) << "and the larger plant is eliminated in parts";
+    EXPECT_GT(whole.plant.particles.size(), 384u);
+    EXPECT_EQ(whole.redone + cut_scene.redone, 0u) << "a step is redone for all trees of a plant at once";
+    EXPECT_NE(numbers_of(whole.plant, hurt), numbers_of(cut_scene.plant, hurt));
+    size_t compared = 0;
+    for (const uint64_t tree : trees) {
+      if (met.contains(tree)) continue;
+      const auto expected = numbers_of(whole.plant, tree), found = numbers_of(cut_scene.plant, tree);
+      EXPECT_EQ(expected.size(), found.size());
+      EXPECT_TRUE(expected == found) << "tree " << tree << ", cut at " << part;
+      compared += expected.size();
+    }
+    EXPECT_GT(compared, 150u) << "particles";
+  }
 }
 
 TEST(Climber, GrowsOnWhereItWasNotCut) {
@@ -300,9 +385,9 @@ TEST(TipGrowth, SlidesAlongWhatItMeetsSquarely) {
   const ParticleId tip = append_segment(plant, BranchId(0), {ParticleId(), Vec3(0, 0.06, radius)},
                                         {0.005, radius, radius}, Quat::Identity());
   Shoot shoot{BranchId(0), radius, 0, 1};
-  Random random(1, "tip");
+  const Draws turns(1, {}, "tip");
   double deepest = 0;
-  for (int i = 0; i < 200 && !grow_tip(plant, shoot, parameters, around, random, 0.025); ++i)
+  for (uint64_t i = 0; i < 200 && !grow_tip(plant, shoot, parameters, around, turns.normal(i), 0.025); ++i)
     for (const SdfObstacle* solid : solids)
       deepest = std::max(deepest, radius - solid->closest_point(head_of(plant, tip)).distance);
   EXPECT_LT(deepest, 2e-3) << "m, which contacts undo";

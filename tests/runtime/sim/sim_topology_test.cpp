@@ -58,7 +58,7 @@ TEST(Topology, DetachingSharesParticlesBranchesAndAnchorsBetweenTheTwo) {
   Plant plant = swaying_tree();
   const Plant before = plant;
   const ParticleId cut = middle_of(plant, 1);
-  TopologyChange change;
+  Remap change;
   DetachedFrom from;
   const Plant piece = detach_subtree(plant, cut, &change, &from);
   expect_sound(plant);
@@ -120,7 +120,7 @@ TEST(Topology, CarriedMassesFollowACutWithoutBeingSummedAnew) {
   const ParticleId cut = middle_of(plant, 3);
   const Particle& first = plant.particles[cut.index()];
   add_carried(plant, first.parent, first.branch, -subtree_mass(plant, cut), carried);
-  const TopologyChange change = remove_subtree(plant, cut);
+  const Remap change = remove_subtree(plant, cut);
   const std::vector<double> anew = carried_masses(plant);
   for (size_t i = 0; i < carried.size(); ++i) {
     if (const ParticleId now = change.particles[i]; now.valid()) {
@@ -177,7 +177,7 @@ TEST(FreeFlight, BrokenBranchFallsTumblesAndSwingsWithItsMomentaKept) {
 // A tree grows or loses branches and is calibrated anew while it sways: how much its tips' velocities change
 // against the same tree left alone, one step later.
 double jump(Plant changed, const Plant& alone, const std::vector<ParticleId>& watched,
-            const TopologyChange* moved = nullptr) {
+            const Remap* moved = nullptr) {
   Plant other = alone;
   PlantStepper a, b;
   a.step(changed, {}, {}, {});

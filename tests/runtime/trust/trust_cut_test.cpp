@@ -94,7 +94,7 @@ class SwingingTree : public ::testing::Test {
   double jump(ParticleId cut, double* lost = nullptr) const {
     Plant whole = plant_, held = plant_;
     PlantStepper().step(whole, {}, {}, {});
-    TopologyChange change;
+    Remap change;
     DetachedFrom from;
     detach_subtree(held, cut, &change, &from);
     Plant bare = held;
@@ -124,7 +124,7 @@ TEST_F(SwingingTree, NothingMovesAtTheMomentOfACut) {
   for (size_t b = 1; b < plant_.branches.size(); b += 3) {
     const ParticleId root = plant_.branches[b].particles[plant_.branches[b].particles.size() / 2];
     Plant cut = plant_;
-    TopologyChange change;
+    Remap change;
     DetachedFrom from;
     const Plant piece = detach_subtree(cut, root, &change, &from);
     for (size_t i = 0; i < plant_.motion.size(); ++i) {

@@ -90,8 +90,7 @@ TEST_F(BentClimber, ExertsAfterACutWhatItDidButForTheWeight) {
   for (size_t b = 3; b < plant_.branches.size(); b += 7) {
     Plant cut = plant_;
     Climber climber = climber_;
-    const TopologyChange change = remove_subtree(cut, plant_.branches[b].particles.front());
-    climber.follow(change);
+    const Remap change = remove_subtree(cut, plant_.branches[b].particles.front());
     const size_t left = cut.particles.size();
     climber.grow(cut, {}, Vec3::UnitY(), 0);
     const Plant weight = carrying(cut), weight_before = carrying(plant_);
@@ -197,8 +196,7 @@ TEST_F(BentClimber, RecalibratedTipsJumpAsLittleAfterACut) {
   for (size_t b = 3; b < plant_.branches.size(); b += 23, ++cuts) {
     Plant cut = plant_;
     Climber climber = climber_;
-    const TopologyChange change = remove_subtree(cut, plant_.branches[b].particles.front());
-    climber.follow(change);
+    const Remap change = remove_subtree(cut, plant_.branches[b].particles.front());
     std::vector<Wrench> load;
     for (size_t i = 0; i < load_.size(); ++i)
       if (change.particles[i].valid()) load.push_back(load_[i]);
