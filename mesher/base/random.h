@@ -39,6 +39,11 @@ class Random {
     return radius * std::cos(2 * kPi * uniform());
   }
 
+  template <class Archive>
+  void persist(Archive& a) {
+    a(state_, increment_);
+  }
+
  private:
   uint64_t state_ = 0, increment_ = 1;
 };

@@ -34,6 +34,12 @@ class Anchors {
   size_t count() const { return records_.size(); }
   size_t released() const { return released_; }  ///< so far
 
+  template <class Archive>
+  void persist(Archive& a) {
+    a(records_, held_, released_);
+    // not state: parameters_, young_radius_: set once
+  }
+
  private:
   struct Record {
     ParticleId particle;
@@ -41,6 +47,11 @@ class Anchors {
     double age = 0;            // growth s
     const SdfObstacle* solid;  // what it holds on to, null: the ground
     Vec3 on_solid, normal;     // where, m, and out of it, unit; in the solid's own frame
+
+    template <class Archive>
+    void persist(Archive& a) {
+      a(particle, gap, age, solid, on_solid, normal);
+    }
   };
   AnchorParameters parameters_;
   double young_radius_;

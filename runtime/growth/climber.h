@@ -53,6 +53,14 @@ class Climber {
 
   const ClimberParameters& parameters() const { return parameters_; }
 
+  template <class Archive>
+  void persist(Archive& a) {
+    a(wander_, branching_, leafing_, shoots_, leaves_, anchors_, crowding_, young_radius_, joint_length_,
+      calibrated_, stiffness_, kept_, germinated_, next_hold_, next_settled_);
+    // not state: parameters_, law_, seed_: set once
+    // not state: found_, uncarried_, uncarried_now_, chain_, rest_: working memory of one call
+  }
+
  private:
   /// What a branch was like when it was last calibrated.
   struct Calibrated {
@@ -61,6 +69,11 @@ class Climber {
     double base = 0;          // N·m/rad, physical stiffness of its first joint
     bool on_its_way = false;  // to what it should be: it was changed by no more than what is not seen
     double seen_length = 0, seen_base = 0;  // in the last call
+
+    template <class Archive>
+    void persist(Archive& a) {
+      a(length, mass, base, on_its_way, seen_length, seen_base);
+    }
     bool differs(const Calibrated& now, double by) const {
       return on_its_way || std::abs(now.length - length) > by * length ||
              std::abs(now.mass - mass) > by * mass || std::abs(now.base - base) > by * base;
@@ -97,6 +110,11 @@ class Climber {
   std::vector<Found> found_;  // per branch, now
   struct ByJoint {
     Vec3 shear, bend;
+
+    template <class Archive>
+    void persist(Archive& a) {
+      a(shear, bend);
+    }
   };
   std::vector<ByJoint> stiffness_;                    // N/m, N·m/rad, per particle, as the last call left it
   std::vector<ByJoint> kept_;                         // N, N·m, per particle

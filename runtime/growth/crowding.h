@@ -43,12 +43,23 @@ class Crowding {
     return false;
   }
 
+  template <class Archive>
+  void persist(Archive& a) {
+    a(cells_);
+    // not state: cell_: set once
+  }
+
  private:
   using Key = std::array<int, 3>;
   struct Entry {
     Vec3 x;
     BranchId branch;
     ParticleId particle;
+
+    template <class Archive>
+    void persist(Archive& a) {
+      a(x, branch, particle);
+    }
   };
   Key key(const Vec3& x) const {
     return {static_cast<int>(std::floor(x.x() / cell_)), static_cast<int>(std::floor(x.y() / cell_)),

@@ -28,12 +28,23 @@ class Leaves {
 
   size_t count() const { return leaves_.size(); }
 
+  template <class Archive>
+  void persist(Archive& a) {
+    a(leaves_, first_growing_);
+    // not state: parameters_: set once
+  }
+
  private:
   struct Leaf {
     BranchId branch;
     double full_length, full_width;  // m
     Vec3 outward;                    // unit
     double age = 0;                  // growth s
+
+    template <class Archive>
+    void persist(Archive& a) {
+      a(branch, full_length, full_width, outward, age);
+    }
   };
   void resize(Plant& plant, const Leaf& leaf, double size, const SpeciesLaw& law) const;
 

@@ -23,6 +23,11 @@ struct Shoot {
   unsigned leaves = 0;
   bool growing = true;
   bool lost_tip = false;  ///< since the last step of growth
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(branch, tip_radius, course, longest, light, free_length, since_leaf, leaves, growing, lost_tip);
+  }
 };
 
 /// Upwards along a surface of this outward normal, rotated by `course` about it: unit; zero where the surface

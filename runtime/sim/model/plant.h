@@ -21,6 +21,11 @@ struct alignas(32) Motion {
   Vec3 angular_velocity = Vec3::Zero();      ///< rad/s
   Vec3 acceleration = Vec3::Zero();          ///< m/s², generalized-α's a
   Vec3 angular_acceleration = Vec3::Zero();  ///< rad/s²
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(position, orientation, velocity, angular_velocity, acceleration, angular_acceleration);
+  }
 };
 
 /// The joint that holds a particle to its parent (to the world for the first particle of a plant).
@@ -35,6 +40,11 @@ struct Joint {
   Vec3 bend_stiffness = Vec3::Zero();   ///< C_b = (EI_x, GJ, EI_z)/h, N·m/rad, after calibration
   Vec3 rest_force = Vec3::Zero();       ///< what the joint exerts on the particle at rest, joint's frame, N
   Vec3 rest_moment = Vec3::Zero();      ///< the same about the joint, N·m
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(on_parent, on_self, rest, shear_stiffness, bend_stiffness, rest_force, rest_moment);
+  }
 };
 
 /// Four lines of the cache.
@@ -49,6 +59,12 @@ struct alignas(64) Particle {
   double mass_damping = 0;       ///< d_M, 1/s
   double stiffness_damping = 0;  ///< d_K, s, of its joint
   Joint joint;
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(parent, branch, half_length, half_width, half_thickness, mass, inertia, mass_damping, stiffness_damping,
+      joint);
+  }
 };
 
 }  // namespace liana
@@ -74,6 +90,11 @@ struct WorldSpring {
   Mat3 stiffness = Mat3::Zero();        ///< N/m, symmetric positive semi-definite, world frame
   Mat3 damping = Mat3::Zero();          ///< N·s/m, acts on the point's velocity relative to the target's
   Vec3 target_velocity = Vec3::Zero();  ///< m/s
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(particle, on_particle, target, stiffness, damping, target_velocity);
+  }
 };
 
 /// A chain of particles with one material: a baked domain, a growing shoot, or a leaf.
@@ -90,6 +111,11 @@ struct Branch {
   double stiffness_scale = 1;  ///< k*/ω₁² of the last calibration, of the physical joint stiffnesses
   uint32_t shade = kNoShade;   ///< what its look varies with, once ids have changed
   double strength = 0;         ///< Pa that its joints bear (see breaking.h); 0: it never breaks
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(parent, kind, level, group, domain, particles, length, material, stiffness_scale, shade, strength);
+  }
 };
 
 /// Direct: PlantStepper's own; ShapeMatching: [Haedrich17]'s scheme, which no material drives
@@ -106,6 +132,11 @@ struct TimeScheme {
   Solver solver = Solver::Direct;
 
   double substep() const { return dt / substeps; }
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(dt, rho_infinity, substeps, solver);
+  }
 };
 
 struct Plant {
@@ -115,6 +146,11 @@ struct Plant {
   std::vector<Particle> particles;   ///< parents first
   std::vector<Branch> branches;      ///< parents first
   std::vector<WorldSpring> anchors;  ///< persist; contacts and grabs are given to each step anew
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(name, scheme, motion, particles, branches, anchors);
+  }
 };
 
 }  // namespace liana
