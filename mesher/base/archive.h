@@ -101,6 +101,11 @@ class Archive {
   void value(T (&v)[kSize]) {
     elements(v, kSize);
   }
+  /// A fixed number of values that are there already.
+  template <class T>
+  void value(std::span<T>& v) {
+    elements(v.data(), v.size());
+  }
   template <class T>
   void elements(T* first, size_t n) {
     if constexpr (kPlainBytes<T>)
