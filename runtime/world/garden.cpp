@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesher/base/state_bytes.h"
 #include "mesher/base/stopwatch.h"
 #include "runtime/world/planting.h"
 
@@ -71,6 +72,14 @@ Detachment Garden::detach(size_t plant, ParticleId particle, std::string name) {
   if (from.detached) from.detached->lay.clear();
   plants_.push_back(std::move(part));
   return cut;
+}
+
+void Garden::have_parts_for(size_t count) {
+  constexpr size_t kMost = 1u << 20;
+  if (count < origins_.size() || count > kMost) state_mismatch();
+  plants_.resize(count);
+  for (auto& plant : plants_)
+    if (!plant) plant = std::make_unique<PlantInstance>();
 }
 
 void Garden::remove(size_t part) {

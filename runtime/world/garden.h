@@ -47,13 +47,20 @@ class Garden {
 
   template <class Archive>
   void persist(Archive& a) {
-    a(plants_, touching_, touched_, max_overlap_);
+    size_t count = plants_.size();
+    a(count);
+    if constexpr (Archive::kReads) have_parts_for(count);
+    for (auto& plant : plants_) a(*plant);
+    a(touching_, touched_, max_overlap_);
     // not state: origins_: of the scene
     // not state: touching_seconds_: of a clock on the wall
     // not state: all_plants_, all_springs_, in_wind_: where things are
   }
 
  private:
+  /// As many plants, those of the scene among them; of parts that are new, all is still to be read.
+  void have_parts_for(size_t count);
+
   std::vector<PlantOrigin> origins_;  // of the scene's plants
   std::vector<std::unique_ptr<PlantInstance>> plants_;
   PlantContacts touching_;
