@@ -76,7 +76,7 @@ std::string report_json(const World& world, double total_seconds, double render_
   json["anchors"] = report.anchors;
   json["redone_steps"] = report.redone_steps;
   json["contact_passes"] = report.contact_passes;
-  json["reseated_joints"] = report.reseated_joints;
+  json["projected_joints"] = report.projected_joints;
   json["lost_steps"] = report.lost_steps;
   json["parts"] = {{"broken", report.broken},     {"shed", report.shed},     {"cut", report.cut},
                    {"detached", report.detached}, {"asleep", report.asleep}, {"removed", report.removed}};
@@ -124,8 +124,8 @@ void print_summary(const World& world, double total_seconds, double render_secon
                report.removed);
   if (report.redone_steps > 0)
     fmt::print("note: {} steps were redone with finer substeps\n", report.redone_steps);
-  if (report.reseated_joints > 0)
-    fmt::print("note: {} joints were torn open and closed by hand\n", report.reseated_joints);
+  if (report.projected_joints > 0)
+    fmt::print("note: {} joints were torn open and closed by hand\n", report.projected_joints);
   if (report.lost_steps > 0)
     fmt::print("note: {} steps did not stay finite and were stopped\n", report.lost_steps);
   for (const std::string& note : world.notes()) fmt::print("note: {}\n", note);

@@ -1,4 +1,4 @@
-// A scene that lives: its plants grow, feel wind, touch obstacles and move, step by step.
+// A scene that lives: its plants grow, sway in the wind, touch obstacles and move, step by step.
 //
 // What it is made of has rooms of its own: obstacles, garden (plants), script (what the scene does to them
 // when), grabs, severing (cuts and breaks), weather. step() shows the order in which they work.

@@ -23,12 +23,12 @@ struct PhaseSeconds {
 
 /// Of one plant's steps since its start.
 struct PlantReport {
-  size_t contacts = 0;         ///< with obstacles and the ground, in the last step
-  double max_penetration = 0;  ///< m, deepest that any particle ever was in an obstacle or the ground
-  size_t redone_steps = 0;     ///< steps that the solver took again with finer substeps
-  size_t contact_passes = 0;   ///< taken again because a contact showed only at the step's end
-  size_t reseated_joints = 0;  ///< closed by hand where the finest substeps did not hold them
-  size_t lost_steps = 0;       ///< steps that did not stay finite and were stopped
+  size_t contacts = 0;          ///< with obstacles and the ground, in the last step
+  double max_penetration = 0;   ///< m, deepest that any particle ever was in an obstacle or the ground
+  size_t redone_steps = 0;      ///< steps that the solver took again with finer substeps
+  size_t contact_passes = 0;    ///< taken again because a contact showed only at the step's end
+  size_t projected_joints = 0;  ///< closed by joint projection where the finest substeps did not hold them
+  size_t lost_steps = 0;        ///< steps that did not stay finite and were stopped
   double growth_seconds = 0, collision_seconds = 0, physics_seconds = 0;  ///< of work
 
   void note(const ContactStepReport& done) {
@@ -36,7 +36,7 @@ struct PlantReport {
     max_penetration = std::max(max_penetration, done.contacts.max_penetration);
     contact_passes += static_cast<size_t>(done.passes - 1);
     redone_steps += done.step.redone > 0;
-    reseated_joints += static_cast<size_t>(done.step.reseated);
+    projected_joints += static_cast<size_t>(done.step.reseated);
     lost_steps += !done.step.finite;
     collision_seconds += done.collision_seconds;
   }
@@ -44,14 +44,14 @@ struct PlantReport {
   void add(const PlantReport& o) {
     max_penetration = std::max(max_penetration, o.max_penetration);
     redone_steps += o.redone_steps, contact_passes += o.contact_passes;
-    reseated_joints += o.reseated_joints, lost_steps += o.lost_steps;
+    projected_joints += o.projected_joints, lost_steps += o.lost_steps;
     growth_seconds += o.growth_seconds, collision_seconds += o.collision_seconds;
     physics_seconds += o.physics_seconds;
   }
 
   template <class Archive>
   void persist(Archive& a) {
-    a(contacts, max_penetration, redone_steps, contact_passes, reseated_joints, lost_steps);
+    a(contacts, max_penetration, redone_steps, contact_passes, projected_joints, lost_steps);
     // not state: growth_seconds, collision_seconds, physics_seconds: of a clock on the wall
   }
 };
