@@ -61,6 +61,11 @@ struct DomainMaterial {
   double damping_factor;     ///< ξ
   double mass_damping;       ///< d_M, 1/s
   double stiffness_damping;  ///< d_K, s
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(frequency, mass_scaling, damping_factor, mass_damping, stiffness_damping);
+  }
 };
 
 /// How ν follows from a domain: by [Wang17]'s own law, or by one of those it compares itself with. What mass

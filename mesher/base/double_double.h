@@ -2,7 +2,12 @@
 // [Dekker 1971; Knuth, The Art of Computer Programming 2, 4.2.2].
 #pragma once
 
+#include <limits>
+
 namespace liana::fixed {
+
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kToWhole = 0x1.8p52;  // added and taken away: rounds to the nearest whole number
 
 /// high + low, |low| at most half a unit in the last place of high.
 struct Pair {

@@ -12,11 +12,9 @@ namespace liana::fixed {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 // ln 2: its first 32 bits, so that whole multiples are exact, and the rest
 constexpr double kLn2 = 0x1.62e42fee00000p-1, kLn2Rest = 0x1.a39ef35793c76p-33;
 constexpr double kPerLn2 = 0x1.71547652b82fep+0;
-constexpr double kToWhole = 0x1.8p52;  // added and taken away: rounds to the nearest whole number
 
 constexpr std::array<double, 12> kReciprocalFactorials = {
     1.0 / 6227020800, 1.0 / 479001600, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880, 1.0 / 40320,

@@ -9,7 +9,6 @@
 namespace liana::fixed {
 namespace {
 
-constexpr double kToWhole = 0x1.8p52;  // added and taken away: rounds to the nearest whole number
 constexpr double kQuarterTurn = 0x1.921fb54442d18p+0, kQuarterRest = 0x1.1a62633145c07p-54;
 
 /// x less a whole number of quarter turns; |x.high| at most a little above π/4.
@@ -128,8 +127,6 @@ Pair other_leg(double x) {
   const Pair again = two_product(root, root);
   return {root, (((w.high - again.high) - again.low) + (w.low - square.low)) / (2 * root)};
 }
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 

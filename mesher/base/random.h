@@ -62,6 +62,11 @@ class Random {
     return radius * fixed::cos(2 * kPi * uniform());
   }
 
+  template <class Archive>
+  void persist(Archive& a) {
+    a(state_, increment_);
+  }
+
  private:
   uint64_t state_ = 0, increment_ = 1;
 };

@@ -4,10 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "runtime/app/scene/scene_preparation.h"
 #include "runtime/app/verbs.h"
 #include "runtime/app/writable.h"
 #include "runtime/view/window.h"
 #include "runtime/world/session.h"
+#include "runtime/world/world_drawing.h"
 
 namespace liana {
 namespace {
@@ -27,10 +29,10 @@ int edit(const EditArguments& arguments) {
   options.height = arguments.size[1];
   options.paused = arguments.paused;
   if (!arguments.camera.empty()) options.camera = Camera::parse(arguments.camera);
-  const Scene scene = read_scene(arguments.scene);
+  const Scene scene = load_scene(arguments.scene);
   World world(scene, arguments.threads);
   options.title = "liana - " + arguments.scene.filename().string();
-  if (!options.camera) options.camera = world.camera();
+  if (!options.camera) options.camera = camera_of(world);
   if (arguments.record.empty()) return run_editor(world, options);
   SessionRecorder recorder(world, arguments.record);
   return run_editor(recorder, options);

@@ -9,6 +9,7 @@
 #include "mesher/base/files.h"
 #include "mesher/base/hash.h"
 #include "mesher/base/stopwatch.h"
+#include "runtime/app/scene/scene_preparation.h"
 #include "runtime/app/terminal_progress.h"
 #include "runtime/app/verbs.h"
 #include "runtime/app/writable.h"
@@ -16,6 +17,7 @@
 #include "runtime/view/renderer.h"
 #include "runtime/view/video.h"
 #include "runtime/world/session.h"
+#include "runtime/world/world_drawing.h"
 
 namespace liana {
 namespace {
@@ -74,10 +76,10 @@ std::string report_json(const World& world, double total_seconds, double render_
   json["anchors"] = report.anchors;
   json["redone_steps"] = report.redone_steps;
   json["contact_passes"] = report.contact_passes;
-  json["reseated_joints"] = report.reseated_joints;
+  json["projected_joints"] = report.projected_joints;
   json["lost_steps"] = report.lost_steps;
-  json["parts"] = {{"broken", report.broken}, {"shed", report.shed},     {"cut", report.cut},
-                   {"fallen", report.fallen}, {"asleep", report.asleep}, {"removed", report.removed}};
+  json["parts"] = {{"broken", report.broken},     {"shed", report.shed},     {"cut", report.cut},
+                   {"detached", report.detached}, {"asleep", report.asleep}, {"removed", report.removed}};
   json["seconds"] = {{"total", total_seconds},
                      {"physics", report.seconds.physics},
                      {"growth", report.seconds.growth},
@@ -116,14 +118,14 @@ void print_summary(const World& world, double total_seconds, double render_secon
   if (report.broken + report.shed + report.cut > 0)
     fmt::print(
         "came off: {} branches broke, {} leaves were shed, {} parts were cut; {} lie about ({} at rest)\n",
-        report.broken, report.shed, report.cut, report.fallen, report.asleep);
+        report.broken, report.shed, report.cut, report.detached, report.asleep);
   if (report.removed > 0)
-    fmt::print("note: {} fallen parts were taken away, at rest for their time or blown out of the scene\n",
+    fmt::print("note: {} detached parts were taken away, at rest for their time or blown out of the scene\n",
                report.removed);
   if (report.redone_steps > 0)
     fmt::print("note: {} steps were redone with finer substeps\n", report.redone_steps);
-  if (report.reseated_joints > 0)
-    fmt::print("note: {} joints were torn open and closed by hand\n", report.reseated_joints);
+  if (report.projected_joints > 0)
+    fmt::print("note: {} joints were torn open and closed by hand\n", report.projected_joints);
   if (report.lost_steps > 0)
     fmt::print("note: {} steps did not stay finite and were stopped\n", report.lost_steps);
   for (const std::string& note : world.notes()) fmt::print("note: {}\n", note);
@@ -134,7 +136,7 @@ int simulate(const SimulateArguments& arguments) {
        {arguments.png, arguments.mp4, arguments.glb, arguments.report, arguments.record})
     if (!output.empty()) require_writable_folder(output);
   const Stopwatch total;
-  const Scene scene = read_scene(arguments.scene);
+  const Scene scene = load_scene(arguments.scene);
   World world(scene, arguments.threads);
   auto steps = static_cast<size_t>(std::lround(arguments.seconds.value_or(scene.seconds) / scene.time_step));
   std::optional<SessionReplay> replay;
@@ -157,7 +159,7 @@ int simulate(const SimulateArguments& arguments) {
   if (arguments.smooth_video) video_frame.samples = 4;
   if (!arguments.mp4.empty()) video.emplace(arguments.mp4, video_frame.width, video_frame.height, kFrameRate);
   Film film(arguments, steps, scene.time_step);
-  const Camera camera = world.camera();
+  const Camera camera = camera_of(world);
 
   {
     TerminalProgress progress;
@@ -171,7 +173,7 @@ int simulate(const SimulateArguments& arguments) {
       const size_t due = film.due(static_cast<double>(i) * scene.time_step);
       if (video && due > 0) {
         const Stopwatch watch;
-        const Image frame = renderer->render(world.drawing(), camera, video_frame);
+        const Image frame = renderer->render(drawing_of(world), camera, video_frame);
         for (size_t copy = 0; copy < due; ++copy) video->add(frame);
         render_seconds += watch.seconds();
       }
@@ -181,9 +183,9 @@ int simulate(const SimulateArguments& arguments) {
   const Stopwatch watch;
   if (video) video->finish();
   if (!arguments.png.empty())
-    write_png(arguments.png, renderer->render(world.drawing(), camera, still_frame(width, height)));
+    write_png(arguments.png, renderer->render(drawing_of(world), camera, still_frame(width, height)));
   render_seconds += watch.seconds();
-  if (!arguments.glb.empty()) write_gltf(arguments.glb, world.drawing(true));
+  if (!arguments.glb.empty()) write_gltf(arguments.glb, drawing_of(world, true));
   if (!arguments.report.empty())
     write_file(arguments.report, report_json(world, total.seconds(), render_seconds));
   print_summary(world, total.seconds(), render_seconds);

@@ -20,6 +20,11 @@ void carry_grown_weight(Plant& plant, const Vec3& gravity, std::vector<RestPose>
 /// In a joint's frame, as Joint's rest_force and rest_moment.
 struct JointLoad {
   Vec3 force, moment;  ///< N, N·m
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(force, moment);
+  }
 };
 
 /// What the weight beyond each joint, where it is now, asks of the joint beyond its rest load.

@@ -21,6 +21,11 @@ struct Grip {
   bool holds = false;
   Vec3 on_a = Vec3::Zero();  ///< where the particle holds on, in its own frame, m
   Vec3 on_b = Vec3::Zero();  ///< the same in the frame of what it touches, m
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(holds, on_a, on_b);
+  }
 };
 
 /// What friction does in a step: a tangential spring with this stretch, or a dashpot.

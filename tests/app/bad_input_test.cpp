@@ -223,7 +223,7 @@ TEST_F(BadInput, WindOfASceneIsRefusedWithItsLine) {
       {"[wind]\n[[wind.emitter]]\ncenter = [0, 1, 0]\ndirection = [1, 0, 0]\nspeed = 500\n", 8, "'speed'"},
       {emitter + "[wind.air]\nspacing = 0\n", 11, "'spacing' is 0"},
       {emitter + "[wind.air]\nlow = [5, 5, 5]\nhigh = [9, 9, 9]\n", 6, "outside of the air's domain"},
-      {"[[pluck]]\ndomain = \"trunk\"\nvelocity = [1, 0, 0]\n", 4, "no [[plant]] to pluck"}};
+      {"[[pluck]]\ndomain = \"trunk\"\nvelocity = [1, 0, 0]\n", 4, "no [[plant]] to strike"}};
   for (const auto& [text, line, said] : cases) {
     SCOPED_TRACE(text);
     write("scene.toml", climber + text);

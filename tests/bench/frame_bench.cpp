@@ -3,9 +3,13 @@
 
 #include <algorithm>
 
+#include "materials/bake/bake_file.h"
 #include "mesher/base/stopwatch.h"
+#include "runtime/app/scene/scene_preparation.h"
 #include "runtime/obstacles/box_mesh.h"
 #include "runtime/world/world.h"
+#include "tests/support/plants/synthetic_bake.h"
+#include "tests/support/scratch_folder.h"
 
 namespace liana {
 namespace {
@@ -54,7 +58,7 @@ void frame_of_growing_ivies(benchmark::State& state) {
   for (auto _ : state) {
     Scene scene = ivies(8, 25000);
     scene.plant_contacts = state.range(0) > 0;
-    World world(scene, 2);
+    World world(with_united_solids(scene), 2);
     grow_and_time(world, 24900, state);
   }
 }
@@ -76,11 +80,33 @@ void frame_of_ivies_in_air(benchmark::State& state) {
     air.emitters.push_back(
         {.shape = EmitterParameters::Shape::Box, .center = {-6.3, 1.5, 1.2}, .width = 2.2, .height = 2.8});
     scene.wind.air = air;
-    World world(scene, 2);
+    World world(with_united_solids(scene), 2);
     grow_and_time(world, 9900, state);
   }
 }
 BENCHMARK(frame_of_ivies_in_air)->Iterations(1)->Unit(benchmark::kMillisecond);
+
+/// Saving and loading all of a world's state: snapshots for undo.
+void state_of_a_world(benchmark::State& state) {
+  const ScratchFolder folder;
+  write_bake(test::synthetic_bake({.branches = 24, .twigs = 6, .leaves = 6}), folder / "tree.bake");
+  Scene scene;
+  for (int i = 0; i < 12; ++i)
+    scene.plants.push_back({folder / "tree.bake", Vec3(2.0 * i, 0, 0), 0.3 * i, 0.5});
+  scene.wind.velocity = {4, 0, 1};
+  World world(scene, 2);
+  for (int i = 0; i < 20; ++i) world.step();
+  WorldState saved;
+  for (auto _ : state) {
+    if (state.range(0) > 0)
+      world.load(saved = world.save());
+    else
+      world.save(saved);
+  }
+  state.counters["particles"] = static_cast<double>(world.report().particles);
+  state.counters["megabytes"] = 1e-6 * static_cast<double>(saved.bytes().size());
+}
+BENCHMARK(state_of_a_world)->ArgName("and_load")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace liana

@@ -1,7 +1,7 @@
 // read_scene on any bytes, beside an empty bake, so that scenes may name one: everything in its range and
 // every index of something that is there, or an Error.
 #include "mesher/base/error.h"
-#include "runtime/world/scene_file.h"
+#include "runtime/world/scene/scene_file.h"
 #include "tests/fuzz/fuzz_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
@@ -11,8 +11,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     liana::require(scene.time_step > 0 && scene.seconds >= 0 && scene.gravity.allFinite(), "a finite world");
     liana::require(!scene.plants.empty() || !scene.climbers.empty(), "something that grows");
     liana::require(scene.wind.velocity.allFinite(), "a finite wind");
-    for (const liana::ScenePluck& pluck : scene.plucks)
-      liana::require(pluck.plant < scene.plants.size(), "a plant to pluck");
+    for (const liana::SceneImpulse& impulse : scene.impulses)
+      liana::require(impulse.plant < scene.plants.size(), "a plant to strike");
     const auto is_there = [&](const liana::ScenePoint& point) {
       return point.index < (point.climber ? scene.climbers.size() : scene.plants.size());
     };

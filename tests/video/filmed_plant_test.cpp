@@ -9,8 +9,9 @@
 #include "materials/bake/bake_file.h"
 #include "materials/law/species_file.h"
 #include "mesher/base/files.h"
+#include "runtime/app/scene/scene_preparation.h"
 #include "runtime/view/video.h"
-#include "runtime/world/world.h"
+#include "runtime/world/world_drawing.h"
 #include "tests/support/program.h"
 #include "tests/support/scratch_folder.h"
 
@@ -34,13 +35,13 @@ class InferFromVideo : public testing::Test {
     run({"simulate", "scene.toml", "--seconds", length, "--mp4", "plant.mp4", "--video-seconds", length,
          "--true-pace", length, "--smooth-video", "--video-size", std::to_string(kWidth),
          std::to_string(kHeight)});
-    const World world(read_scene(folder_ / "scene.toml"));
+    const World world(load_scene(folder_ / "scene.toml"));
     std::vector<std::string> points;
     for (const Branch& branch : world.plant(0).branches) {
       const size_t tip = branch.particles.back().index();
       const Motion& m = world.plant(0).motion[tip];
       const Vec3 end = m.position + m.orientation * Vec3(0, world.plant(0).particles[tip].half_length, 0);
-      const Vec3 pixel = world.camera().project(end, kWidth, kHeight);
+      const Vec3 pixel = camera_of(world).project(end, kWidth, kHeight);
       points.push_back("--point");
       points.push_back(std::to_string(pixel.x()) + "," + std::to_string(pixel.y()) + "=#" +
                        std::to_string(branch.domain.index()));

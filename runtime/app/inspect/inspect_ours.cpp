@@ -11,7 +11,7 @@
 #include "mesher/base/hash.h"
 #include "runtime/app/bake/bake_table.h"
 #include "runtime/app/inspect/inspect.h"
-#include "runtime/world/scene_file.h"
+#include "runtime/world/scene/scene_file.h"
 
 namespace liana {
 namespace {

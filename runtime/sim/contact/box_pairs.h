@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesher/base/archive.h"
 #include "mesher/base/types.h"
 
 namespace liana {
@@ -27,6 +28,9 @@ struct alignas(32) FlatBox {
     return (halves[0] & halves[1]) == -1;
   }
 };
+
+template <>
+inline constexpr bool kPlainBytes<FlatBox> = true;
 
 /// A binary tree over the boxes in their order, groups of four at its ends: made anew for moved boxes in one
 /// pass over them. The order of what it finds is a function of the boxes alone. Keep it: it owns its memory.

@@ -33,6 +33,12 @@ class ContactStepper {
 
   Contacts& contacts() { return contacts_; }
 
+  template <class Archive>
+  void persist(Archive& a) {
+    a(contacts_, stepper_);
+    // not state: options_: set once
+  }
+
  private:
   Contacts contacts_;
   ContactStepOptions options_;

@@ -49,12 +49,25 @@ class Contacts {
   /// Only looks: the report of the present state, with no springs.
   ContactReport measure(const Plant& plant, const CollisionScene& scene);
 
+  template <class Archive>
+  void persist(Archive& a) {
+    a(slots_, exempt_, made_);
+    // not state: options_: set once
+    // not state: probes_, before_: working memory of one step
+    // not state: clearances_: bounds that change no answer, learnt again
+    if constexpr (Archive::kReads) clearances_ = Clearances();
+  }
+
  private:
   struct Made {
-    uint64_t key;  // particle, probe, solid
+    uint64_t key = 0;  // particle, probe, solid
     Vec3 normal = Vec3::Zero();
     Grip grip = {};
     bool operator<(const Made& other) const { return key < other.key; }
+    template <class Archive>
+    void persist(Archive& a) {
+      a(key, normal, grip);
+    }
   };
   void notice_new_particles(const Plant& plant, const CollisionScene& scene);
   WorldSpring spring(const Plant& plant, const Motion& motion, const Gap& found, double to_surface,

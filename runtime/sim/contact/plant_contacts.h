@@ -32,6 +32,11 @@ struct PlantContactReport {
   size_t candidates = 0;   ///< pairs in the list
   size_t listed = 0;       ///< particles whose neighbours were looked up anew
   double max_overlap = 0;  ///< m, of the state looked at, without exempt pairs
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(contacts, exempt, candidates, listed, max_overlap);
+  }
 };
 
 /// One per world: it keeps the list of neighbours, and what pairs that touch remember.
@@ -49,6 +54,14 @@ class PlantContacts {
   /// plants[plant] is gone, and those after it moved up.
   void forget(uint32_t plant);
 
+  template <class Archive>
+  void persist(Archive& a) {
+    a(slots_, sizes_, kin_, listed_, candidates_, memory_);
+    // not state: options_: set once
+    // not state: tree_, forgotten_: made anew before they are asked
+    // not state: bodies_, boxes_, next_memory_, moved_, moved_count_: working memory of one step
+  }
+
  private:
   struct Body {
     Outline outline;
@@ -59,6 +72,10 @@ class PlantContacts {
   struct Kin {
     uint32_t parent, grandparent;  // particles of the same plant, or kNone
     BranchId branch;
+    template <class Archive>
+    void persist(Archive& a) {
+      a(parent, grandparent, branch);
+    }
   };
   struct Memory {   // of a pair that touches
     uint64_t a, b;  // plant << 32 | particle
@@ -66,10 +83,18 @@ class PlantContacts {
     bool exempt;
     Grip grip;
     auto key() const { return std::pair(a, b); }
+    template <class Archive>
+    void persist(Archive& archive) {
+      archive(a, b, normal, exempt, grip);
+    }
   };
   struct Candidate {
     uint32_t a, b;
     uint32_t memory;  // into memory_, or kNone
+    template <class Archive>
+    void persist(Archive& archive) {
+      archive(a, b, memory);
+    }
   };
   static constexpr uint32_t kNone = ~0u;
 

@@ -41,6 +41,14 @@ class ShapeMatchingStepper {
   StepReport step(Plant& plant, std::span<const Wrench> external, std::span<const WorldSpring> transient,
                   const StepOptions& options) noexcept;
 
+  template <class Archive>
+  void persist(Archive& a) {
+    a(age_);
+    // not state: options_: set once
+    // not state: rest_position_, rest_orientation_: laid out anew in every step
+    // not state: position_, orientation_, ellipsoid_, group_, goal_: working memory of one step
+  }
+
  private:
   /// Sums over a group, then what it wants.
   struct Group {

@@ -68,6 +68,16 @@ class PlantStepper {
   /// What the substep runs on; the fastest that this processor has. For tests and benchmarks.
   void use(const lanes::Kernels& kernels) { kernels_ = &kernels; }
 
+  template <class Archive>
+  void persist(Archive& a) {
+    a(shape_matching_, gap_);
+    // not state: kernels_: the processor's
+    // not state: order_: a function of the tree, made anew when that is another
+    // not state: springs_, first_spring_, stale_, now_, next_, start_gap_: working memory of one step
+    // not state: kept_: for taking the same step again
+    if constexpr (Archive::kReads) kept_ = 0;
+  }
+
  private:
   struct Substep;  // the numbers and loads that one substep is taken with
   enum class Outcome { Finite, NotFinite, TreeChanged };

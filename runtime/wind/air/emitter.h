@@ -18,6 +18,12 @@ struct EmitterParameters {
   double turbulence_length = 0.5;  ///< m, length scale of its eddies
   double gust = 0;                 ///< standard deviation of the speed by gusts, over the speed
   double gust_period = 4;          ///< s, from one strong gust to the next, about
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(shape, center, direction, speed, radius, width, height, turbulence, turbulence_length, gust,
+      gust_period);
+  }
 };
 
 /// Sends layers of particles one spacing apart, so that the air leaves with its rest density, each layer
@@ -38,6 +44,12 @@ class Emitter {
   double top_speed() const {
     return parameters_.speed * (1 + 2 * parameters_.gust + 2 * parameters_.turbulence);
   }
+  template <class Archive>
+  void persist(Archive& a) {
+    a(due_, layers_);
+    // not state: parameters_, eddies_, axes_, gust_phase_: set once
+  }
+
   const EmitterParameters& parameters() const { return parameters_; }
   Vec3 direction() const { return axes_.col(0); }
 

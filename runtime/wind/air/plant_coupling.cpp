@@ -117,11 +117,11 @@ void PlantCoupling::find_pairs(Block& block, const PlantInWind& in, const WindFi
       const float centre[3] = {place.x(), place.y(), place.z()};
       float rows[9];
       for (int k = 0; k < 9; ++k) rows[k] = static_cast<float>(G(k / 3, k % 3));
-      air_.for_ranges(place - box, place + box, [&](uint32_t begin, uint32_t end) {
+      air_.cells().for_ranges(place - box, place + box, [&](uint32_t begin, uint32_t end) {
         const size_t room = used + (end - begin) + 16;
         if (block.air.size() < room) block.air.resize(2 * room), block.weight.resize(2 * room);
-        used = air_.passes().ellipsoid(begin, end, air_.xs(), air_.ys(), air_.zs(), centre, rows,
-                                       block.air.data(), block.weight.data(), used);
+        used = air_.passes().ellipsoid(begin, end, air_.cells().xs(), air_.cells().ys(), air_.cells().zs(),
+                                       centre, rows, block.air.data(), block.weight.data(), used);
       });
       for (uint32_t k = target.first; k < used; ++k) {
         const AirState& a = air_.states()[block.air[k]];

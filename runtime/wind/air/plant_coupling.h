@@ -23,8 +23,8 @@
 
 namespace liana {
 
-/// A plant in the wind: which of its particles are still growing (one flag each; empty: none). Those feel the
-/// ambient wind only ([Haedrich17] §5.3).
+/// A plant in the wind: which of its particles are still growing (one flag each; empty: none). Those are
+/// moved by the ambient wind only ([Haedrich17] §5.3).
 struct PlantInWind {
   const Plant* plant;
   std::span<const uint8_t> growing;

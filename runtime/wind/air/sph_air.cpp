@@ -12,10 +12,8 @@
 namespace liana {
 namespace {
 
-constexpr float kFar = 1e18f;  // m: where padding is, out of reach of everything and its square still a float
 constexpr double kCourant = 0.6;       // of c dt / h; air in a box stays calm up to 1.0
 constexpr double kViscous = 1.0 / 15;  // of ν dt / h²: Σ V ∇²W = 15/h², explicit Euler
-constexpr int kTasksPerWorker = 4;
 
 /// Σ W h-independent: the density of a cubic lattice of unit spacing and mass, by particles nearer than two
 /// spacings.
@@ -27,16 +25,8 @@ double lattice_density() {
   return poly6_factor(2) * sum;
 }
 
-}  // namespace
-
-SphAir::~SphAir() = default;
-
-SphAir::SphAir(const AirOptions& o, const AirWalls* walls, const MovingWalls* moving)
-    : options_(o),
-      walls_(walls && !walls->empty() ? walls : nullptr),
-      moving_(moving && !moving->empty() ? moving : nullptr),
-      passes_(sph_passes(o.portable)),
-      team_(o.threads) {
+/// Throws Error{Input} for values out of range.
+const AirOptions& checked(const AirOptions& o) {
   const Vec3 extent = o.high - o.low;
   const bool sound = extent.allFinite() && extent.minCoeff() > 0 && o.spacing > 0 && o.rest_density > 0 &&
                      o.sound_speed > 0 && o.viscosity >= 0 && o.capacity > 0 && o.capacity < (1u << 30) &&
@@ -46,54 +36,37 @@ SphAir::SphAir(const AirOptions& o, const AirWalls* walls, const MovingWalls* mo
     throw Error(
         Error::Kind::Input, "the air's domain, spacing, density, speed of sound or viscosity is out of range",
         "positive finite numbers, a domain with low < high in every axis and less than 100000 spacings long");
-  support_ = 2 * o.spacing;
-  mass_ = o.rest_density * fixed::pow(o.spacing, 3) / lattice_density();
-  longest_step_ = kCourant * support_ / o.sound_speed;
-  if (o.viscosity > 0)
-    longest_step_ = std::min(longest_step_, kViscous * support_ * support_ * o.rest_density / o.viscosity);
-  constants_ = {static_cast<float>(support_), static_cast<float>(mass_ * poly6_factor(support_)),
-                static_cast<float>(mass_ * spiky_factor(support_)), static_cast<float>(o.viscosity)};
-
-  // Cells as wide as the support; wider ones in a domain so large that most would stand empty.
-  double cell = support_, number;
-  do {
-    number = 1;
-    for (int k = 0; k < 3; ++k) number *= cells_[k] = static_cast<int>(std::ceil(extent[k] / cell)) + 2;
-    cell_size_ = static_cast<float>(cell);
-    cell *= 1.25;
-  } while (number > std::max<double>(16384, 2.0 * static_cast<double>(o.capacity)));
-
-  const size_t n = o.capacity, padded = n + 16;
-  state_.resize(padded), sorted_.resize(padded);
-  x_.resize(padded), y_.resize(padded), z_.resize(padded);
-  density_.resize(padded), acceleration_.resize(4 * padded);
-  extra_density_.resize(padded), extra_acceleration_.resize(4 * padded);
-  wall_.resize(padded), key_.resize(padded), list_begin_.resize(padded), list_end_.resize(padded);
-  cell_begin_.resize(static_cast<size_t>(number) + 2);
-  cell_near_wall_.resize(static_cast<size_t>(number));
-  chunks_.resize(kTasksPerWorker * team_.size());
-  for (Chunk& chunk : chunks_) {
-    chunk.list.resize(64 * n / chunks_.size() + 65536);
-    for (auto* values : {&chunk.x, &chunk.y, &chunk.z}) values->resize(padded);
-    chunk.index.resize(padded);
-  }
-  if (moving_) moving_wall_.resize(padded);
-  if (walls_) {
-    const float half = 0.87f * cell_size_, reach = static_cast<float>(support_);
-    for (int z = 0, i = 0; z < cells_[2]; ++z)
-      for (int y = 0; y < cells_[1]; ++y)
-        for (int x = 0; x < cells_[0]; ++x, ++i)
-          cell_near_wall_[i] = walls_->least_near((x - 0.5f) * cell_size_, (y - 0.5f) * cell_size_,
-                                                  (z - 0.5f) * cell_size_, half) < reach
-                                   ? kStanding
-                                   : 0;
-  }
+  return o;
 }
 
-int SphAir::cell_along(float x, int axis) const {
-  return 1 + static_cast<int>(
-                 std::clamp(std::floor(x / cell_size_), -1.0f, static_cast<float>(cells_[axis] - 2)));
+double longest_step_of(const AirOptions& o, double support) {
+  const double by_sound = kCourant * support / o.sound_speed;
+  return o.viscosity > 0 ? std::min(by_sound, kViscous * support * support * o.rest_density / o.viscosity)
+                         : by_sound;
 }
+
+AirConstants constants_of(const AirOptions& o, double support, double mass) {
+  return {static_cast<float>(support), static_cast<float>(mass * poly6_factor(support)),
+          static_cast<float>(mass * spiky_factor(support)), static_cast<float>(o.viscosity)};
+}
+
+}  // namespace
+
+SphAir::SphAir(const AirOptions& o, const AirWalls* walls, const MovingWalls* moving)
+    : options_(checked(o)),
+      support_(2 * o.spacing),
+      mass_(o.rest_density * fixed::pow(o.spacing, 3) / lattice_density()),
+      longest_step_(longest_step_of(o, support_)),
+      constants_(constants_of(o, support_, mass_)),
+      passes_(sph_passes(o.portable)),
+      team_(o.threads),
+      cells_(o.high - o.low, support_, o.capacity),
+      boundary_(walls, moving, cells_, constants_, o.spacing, o.capacity),
+      neighbours_(passes_, constants_, o.capacity, team_.size()),
+      bodies_(o.low, support_, o.rest_density, o.capacity),
+      state_(o.capacity + 16),
+      sorted_(o.capacity + 16),
+      chunk_limited_(neighbours_.chunks()) {}
 
 bool SphAir::add(const Vec3& position, const Vec3& velocity) {
   const Vec3 place = position - options_.low;
@@ -101,10 +74,8 @@ bool SphAir::add(const Vec3& position, const Vec3& velocity) {
       !(position.array() < options_.high.array()).all())
     return false;
   const Eigen::Vector3f x = place.cast<float>(), v = velocity.cast<float>();
-  const double gap = kWallGap * options_.spacing;
-  if (walls_ && walls_->sample(x.x(), x.y(), x.z()).distance < gap) return false;
-  if (moving_ && moving_->sample(x.x(), x.y(), x.z()).wall.distance < gap) return false;
-  density_[count_] = static_cast<float>(options_.rest_density);
+  if (boundary_.blocks(x)) return false;
+  neighbours_.density()[count_] = static_cast<float>(options_.rest_density);
   state_[count_++] = {x.x(), x.y(), x.z(), 0,
                       v.x(), v.y(), v.z(), static_cast<float>(1 / options_.rest_density)};
   return true;
@@ -122,164 +93,81 @@ Vec3 SphAir::momentum() const {
   return mass_ * sum;
 }
 
-// A stable counting sort by cell, which also takes out who left the domain (or is no longer a number).
-void SphAir::sort() {
-  const Eigen::Vector3f extent = (options_.high - options_.low).cast<float>();
-  const auto outside = static_cast<uint32_t>(cell_begin_.size() - 2);
-  std::fill(cell_begin_.begin(), cell_begin_.end(), 0u);
-  const float per_cell = 1 / cell_size_;
-  for (size_t i = 0; i < count_; ++i) {
-    const AirState& a = state_[i];
-    const bool inside = a.x >= 0 && a.x < extent.x() && a.y >= 0 && a.y < extent.y() && a.z >= 0 &&
-                        a.z < extent.z() && std::abs(a.vx + a.vy + a.vz) < kFar;
-    uint32_t key = outside;
-    if (inside)
-      key = (1 + static_cast<uint32_t>(a.x * per_cell)) +
-            cells_[0] * ((1 + static_cast<uint32_t>(a.y * per_cell)) +
-                         cells_[1] * (1 + static_cast<uint32_t>(a.z * per_cell)));
-    key_[i] = key;
-    ++cell_begin_[key];
-  }
-  uint32_t sum = 0;
-  for (uint32_t& begin : cell_begin_) sum += std::exchange(begin, sum);
-  for (size_t i = 0; i < count_; ++i) {
-    const uint32_t to = cell_begin_[key_[i]]++;
-    const AirState& a = state_[i];
-    sorted_[to] = a;
-    x_[to] = a.x, y_[to] = a.y, z_[to] = a.z;
-  }
-  // Each begin has moved to its end, which is the next one's begin.
-  for (size_t k = cell_begin_.size() - 1; k > 0; --k) cell_begin_[k] = cell_begin_[k - 1];
-  cell_begin_[0] = 0;
-  left_ += count_ - cell_begin_[outside];
-  count_ = cell_begin_[outside];
+/// The other states become the present ones, `count` of them and one far away.
+void SphAir::swap_in(size_t count) {
+  count_ = count;
   state_.swap(sorted_);
-  state_[count_] = {kFar, kFar, kFar, 0, 0, 0, 0, 0};
-  for (size_t i = count_; i < count_ + 8; ++i) x_[i] = y_[i] = z_[i] = kFar;
+  state_[count_] = {AirCells::kFar, AirCells::kFar, AirCells::kFar, 0, 0, 0, 0, 0};
+}
 
-  uint32_t cell = 0;
-  for (size_t c = 0; c < chunks_.size(); ++c) {
-    const size_t until = count_ * (c + 1) / chunks_.size();
-    chunks_[c].first_cell = cell, chunks_[c].first = cell_begin_[cell];
-    while (cell < outside && (cell_begin_[cell] < until || c + 1 == chunks_.size())) ++cell;
-    chunks_[c].last_cell = cell, chunks_[c].last = cell_begin_[cell];
-    chunks_[c].limited = 0;
-  }
+void SphAir::sort() {
+  const size_t before = count_;
+  swap_in(cells_.sort(state_.data(), count_, sorted_.data()));
+  left_ += before - count_;
+  neighbours_.divide(cells_);
 }
 
 void SphAir::step(double dt, std::span<AirBody> bodies) {
   sort();
   if (count_ == 0) return;
-  find_body_pairs(bodies);
-  if (moving_) mark_cells_near_moving();
+  bodies_.find(bodies, cells_);
+  if (boundary_.moves()) boundary_.mark_moving(cells_);
   struct Work {
     double dt;
     std::span<AirBody> bodies;
-    void (SphAir::*move)(Chunk&, float);
+    void (SphAir::*densities)(size_t);
+    void (SphAir::*move)(size_t, float);
     std::atomic<size_t> next_density = 0, next_move = 0;
-  } work{dt, bodies, moving_ ? &SphAir::move<true> : &SphAir::move<false>};
+  } work{dt, bodies, boundary_.moves() ? &SphAir::densities<true> : &SphAir::densities<false>,
+         boundary_.moves() ? &SphAir::move<true> : &SphAir::move<false>};
   team_.run([this, &work](unsigned worker) {
-    for (size_t c; (c = work.next_density.fetch_add(1)) < chunks_.size();) densities(chunks_[c]);
+    for (size_t c; (c = work.next_density.fetch_add(1)) < neighbours_.chunks();) (this->*work.densities)(c);
     team_.wait();
-    if (!body_pairs_.empty()) {
-      if (worker == 0) push_bodies(work.bodies, work.dt);
+    if (!work.bodies.empty()) {
+      if (worker == 0) bodies_.push(work.bodies, state_.data(), mass_, work.dt);
       team_.wait();
     }
-    for (size_t c; (c = work.next_move.fetch_add(1)) < chunks_.size();)
-      (this->*work.move)(chunks_[c], static_cast<float>(work.dt));
+    for (size_t c; (c = work.next_move.fetch_add(1)) < neighbours_.chunks();)
+      (this->*work.move)(c, static_cast<float>(work.dt));
   });
-  state_.swap(sorted_);
-  state_[count_] = {kFar, kFar, kFar, 0, 0, 0, 0, 0};
-  for (const Chunk& chunk : chunks_) limited_ += chunk.limited;
-  for (const BodyPair& pair : body_pairs_) {
-    extra_density_[pair.particle] = 0;
-    std::fill_n(&extra_acceleration_[4 * pair.particle], 4, 0.0f);
-  }
-}
-
-void SphAir::densities(Chunk& chunk) {
-  const Candidates near{chunk.x.data(), chunk.y.data(), chunk.z.data(), chunk.index.data()};
-  const auto finish = moving_ ? &SphAir::finish_density<true> : &SphAir::finish_density<false>;
-  uint32_t used = 0;
-  for (uint32_t cell = chunk.first_cell; cell < chunk.last_cell; ++cell) {
-    const uint32_t begin = cell_begin_[cell], end = cell_begin_[cell + 1];
-    if (begin == end) continue;
-    uint32_t run_begin[9], run_end[9];
-    for (int run = 0; run < 9; ++run) {
-      const uint32_t row = cell + cells_[0] * (run % 3 - 1 + cells_[1] * (run / 3 - 1));
-      run_begin[run] = cell_begin_[row - 1], run_end[run] = cell_begin_[row + 2];
-    }
-    const uint32_t count =
-        passes_.gather(begin, end, run_begin, run_end, constants_, x_.data(), y_.data(), z_.data(), near);
-    const size_t room = used + size_t(end - begin) * (count + 16);
-    if (chunk.list.size() < room) chunk.list.resize(2 * room);
-    used = passes_.density(begin, end, near, count, static_cast<int32_t>(count_), constants_, state_.data(),
-                           density_.data(), list_begin_.data(), list_end_.data(), chunk.list.data(), used);
-    (this->*finish)(begin, end, cell_near_wall_[cell]);
-  }
+  swap_in(count_);
+  for (const size_t limited : chunk_limited_) limited_ += limited;
+  bodies_.clear();
 }
 
 template <bool kMovingWalls>
-void SphAir::finish_density(uint32_t begin, uint32_t end, uint8_t near_wall) {
-  const auto rest = static_cast<float>(options_.rest_density), h = constants_.support;
+void SphAir::densities(size_t chunk) {
+  const auto rest = static_cast<float>(options_.rest_density);
   const auto stiffness = static_cast<float>(options_.sound_speed * options_.sound_speed);
-  for (uint32_t i = begin; i < end; ++i) {
-    AirState& a = state_[i];
-    float rho = density_[i] + extra_density_[i];
-    wall_[i].distance = h;
-    float share = 0;  // of the kernel that is wall
-    if (near_wall & kStanding) {
-      wall_[i] = walls_->sample(a.x, a.y, a.z);
-      if (wall_[i].distance < h) share = static_cast<float>(wall_integrals(wall_[i].distance / h).density);
-    }
-    if constexpr (kMovingWalls) share += feel_moving(i, near_wall, share);
-    rho += rest * share;
-    density_[i] = rho;
-    a.pressure = stiffness * std::max(rho - rest, 0.0f);
-    a.specific_volume = 1 / rho;
-  }
+  float* density = neighbours_.density();
+  neighbours_.densities(chunk, cells_, state_.data(), static_cast<int32_t>(count_),
+                        [&](uint32_t begin, uint32_t end, uint32_t cell) {
+                          for (uint32_t i = begin; i < end; ++i) {
+                            AirState& a = state_[i];
+                            float rho = density[i] + bodies_.density(i);
+                            rho += rest * boundary_.look<kMovingWalls>(i, cell, a);
+                            density[i] = rho;
+                            a.pressure = stiffness * std::max(rho - rest, 0.0f);
+                            a.specific_volume = 1 / rho;
+                          }
+                        });
 }
 
 template <bool kMovingWalls>
-void SphAir::move(Chunk& chunk, float dt) {
-  passes_.force(chunk.first, chunk.last, constants_, state_.data(), list_begin_.data(), list_end_.data(),
-                chunk.list.data(), acceleration_.data());
-  const float h = constants_.support, gap = static_cast<float>(kWallGap * options_.spacing);
+void SphAir::move(size_t chunk, float dt) {
+  neighbours_.accelerations(chunk, state_.data());
   const auto fastest = static_cast<float>(2 * options_.sound_speed);
-  for (uint32_t i = chunk.first; i < chunk.last; ++i) {
+  const auto [first, last] = neighbours_.particles(chunk);
+  size_t limited = 0;
+  for (uint32_t i = first; i < last; ++i) {
+    const float *by_air = neighbours_.acceleration() + 4 * size_t{i}, *by_bodies = bodies_.acceleration(i);
+    const float acceleration[3] = {by_air[0] + by_bodies[0], by_air[1] + by_bodies[1],
+                                   by_air[2] + by_bodies[2]};
     AirState a = state_[i];
-    const AirWalls::Sample& wall = wall_[i];
-    float push = 0, hold = 1;  // m/s away from the wall; what its friction leaves of the velocity
-    if (wall.distance < h) {
-      const WallIntegrals integrals = wall_integrals(wall.distance / h);
-      push = dt * a.pressure * a.specific_volume * static_cast<float>(integrals.pressure) / h;
-      const float rub =
-          dt * constants_.viscosity * a.specific_volume * static_cast<float>(integrals.viscosity) / (h * h);
-      hold = 1 / (1 + rub);
-    }
-    a.vx = (a.vx + dt * (acceleration_[4 * i] + extra_acceleration_[4 * i])) * hold + push * wall.x;
-    a.vy = (a.vy + dt * (acceleration_[4 * i + 1] + extra_acceleration_[4 * i + 1])) * hold + push * wall.y;
-    a.vz = (a.vz + dt * (acceleration_[4 * i + 2] + extra_acceleration_[4 * i + 2])) * hold + push * wall.z;
-    if constexpr (kMovingWalls) push_off_moving(a, i, dt);
-    const float speed = std::sqrt(a.vx * a.vx + a.vy * a.vy + a.vz * a.vz);
-    if (speed > fastest) {
-      const float cut = fastest / speed;
-      a.vx *= cut, a.vy *= cut, a.vz *= cut;
-      ++chunk.limited;
-    }
-    a.x += dt * a.vx, a.y += dt * a.vy, a.z += dt * a.vz;
-    if (wall.distance < h) {
-      const float away = a.vx * wall.x + a.vy * wall.y + a.vz * wall.z;
-      const float out = gap - (wall.distance + dt * away);
-      if (out > 0) {
-        a.x += out * wall.x, a.y += out * wall.y, a.z += out * wall.z;
-        const float stop = std::min(away, 0.0f);
-        a.vx -= stop * wall.x, a.vy -= stop * wall.y, a.vz -= stop * wall.z;
-      }
-    }
-    if constexpr (kMovingWalls) keep_out_of_moving(a, i, dt);
+    limited += boundary_.move<kMovingWalls>(a, i, dt, acceleration, fastest);
     sorted_[i] = a;
   }
+  chunk_limited_[chunk] = limited;
 }
 
 }  // namespace liana

@@ -13,8 +13,11 @@
 #include <span>
 #include <vector>
 
-#include "runtime/wind/air/moving_walls.h"
-#include "runtime/wind/air/sph_pass.h"
+#include "mesher/base/archive.h"
+#include "runtime/wind/air/air_bodies.h"
+#include "runtime/wind/air/air_boundary.h"
+#include "runtime/wind/air/air_cells.h"
+#include "runtime/wind/air/air_neighbours.h"
 #include "runtime/wind/air/worker_team.h"
 
 namespace liana {
@@ -31,21 +34,16 @@ struct AirOptions {
   bool portable = false;          ///< no AVX2, for comparison: the same result, slower
 };
 
-/// A solid ellipsoid in the air whose volume displaces it: a thick piece of a plant.
-struct AirBody {
-  Vec3 position;  ///< m
-  Quat orientation;
-  Vec3 half_axes;               ///< m, along its own axes
-  Vec3 impulse = Vec3::Zero();  ///< N·s, what the air's pressure gave it so far: added to by advance()
-};
+template <>
+inline constexpr bool kPlainBytes<AirState> = true;
 
+/// Its parts: AirCells (who is where), AirNeighbours (the sums over pairs), AirBoundary (walls), AirBodies.
 class SphAir {
  public:
   /// Throws Error{Input} for values out of range. Walls must outlive the air; null: none. Moving ones are to
   /// be placed before each step where they are at its begin.
   explicit SphAir(const AirOptions& options, const AirWalls* walls = nullptr,
                   const MovingWalls* moving = nullptr);
-  ~SphAir();
 
   /// A new particle; false when there is no room for it, outside of the domain or in a solid.
   bool add(const Vec3& position, const Vec3& velocity);
@@ -61,84 +59,53 @@ class SphAir {
 
   Vec3 position(size_t i) const { return options_.low + Vec3(state_[i].x, state_[i].y, state_[i].z); }
   Vec3 velocity(size_t i) const { return Vec3(state_[i].vx, state_[i].vy, state_[i].vz); }
-  void push(size_t i, const Vec3& change);                ///< adds to a velocity, m/s
-  double density(size_t i) const { return density_[i]; }  ///< kg/m³, of the last step
-  double particle_mass() const { return mass_; }          ///< kg
-  double support() const { return support_; }             ///< h, m
-  Vec3 momentum() const;                                  ///< kg·m/s, summed in double
+  void push(size_t i, const Vec3& change);                             ///< adds to a velocity, m/s
+  double density(size_t i) const { return neighbours_.density()[i]; }  ///< kg/m³, of the last step
+  double particle_mass() const { return mass_; }                       ///< kg
+  double support() const { return support_; }                          ///< h, m
+  Vec3 momentum() const;                                               ///< kg·m/s, summed in double
   size_t limited() const { return limited_; }  ///< velocities cut to 2 c so far; 0 in normal motion
   /// Particles that left the domain so far, or that moving walls ran over or crushed.
   size_t left() const { return left_; }
   const AirOptions& options() const { return options_; }
 
-  /// The particles in the cells that a box touches: calls visit(first, last) for ranges of indices. The box
-  /// (m) is relative to the domain's low corner.
-  template <class Visit>
-  void for_ranges(const Eigen::Vector3f& low, const Eigen::Vector3f& high, const Visit& visit) const;
+  /// Who is where, as of the last sort: places relative to the domain's low corner.
+  const AirCells& cells() const { return cells_; }
   const SphPasses& passes() const { return passes_; }
   WorkerTeam& team() { return team_; }  ///< between steps
   const AirState* states() const { return state_.data(); }
-  const float* xs() const { return x_.data(); }  ///< of all particles, m from the low corner; padded by 8
-  const float* ys() const { return y_.data(); }
-  const float* zs() const { return z_.data(); }
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(count_, limited_, left_);
+    if (count_ > options_.capacity) state_mismatch();
+    std::span<AirState> there(state_.data(), count_);
+    a(there);
+    // not state: options_, passes_, team_, support_, mass_, longest_step_, constants_: set once
+    // not state: cells_: made again from the particles, which are in their order
+    // not state: boundary_, neighbours_, bodies_, sorted_, chunk_limited_: working memory of one step
+    if constexpr (Archive::kReads) sort();
+  }
 
  private:
-  static constexpr uint8_t kStanding = 1, kMoving = 2;
-  static constexpr double kWallGap = 0.25;  // of the spacing: nearer to a solid no particle comes
-  struct Chunk {                            // particles of some neighbouring cells: one task
-    uint32_t first_cell, last_cell, first, last;
-    std::vector<int32_t> list;
-    std::vector<float> x, y, z;  // candidates of the cell at hand
-    std::vector<int32_t> index;
-    size_t limited;
-  };
-  struct BodyPair {
-    uint32_t body, particle;
-    float volume_gradient[3];  // V_b ∇W, 1/m
-  };
-  int cell_along(float x, int axis) const;
-  void find_body_pairs(std::span<const AirBody> bodies);
-  void push_bodies(std::span<AirBody> bodies, double dt);
-  void densities(Chunk& chunk);
   template <bool kMovingWalls>
-  void finish_density(uint32_t begin, uint32_t end, uint8_t near_wall);
+  void densities(size_t chunk);
   template <bool kMovingWalls>
-  void move(Chunk& chunk, float dt);
-  void mark_cells_near_moving();
-  float feel_moving(uint32_t i, uint8_t near_wall, float share);
-  void push_off_moving(AirState& a, uint32_t i, float dt) const;
-  void keep_out_of_moving(AirState& a, uint32_t i, float dt) const;
+  void move(size_t chunk, float dt);
+  void swap_in(size_t count);
 
   AirOptions options_;
-  const AirWalls* walls_;      // null: none
-  const MovingWalls* moving_;  // null: none
-  const SphPasses& passes_;
-  WorkerTeam team_;
   double support_, mass_, longest_step_;
   AirConstants constants_;
-  float cell_size_;
-  int cells_[3];  // with an empty border
+  const SphPasses& passes_;
+  WorkerTeam team_;
+  AirCells cells_;
+  AirBoundary boundary_;
+  AirNeighbours neighbours_;
+  AirBodies bodies_;
   size_t count_ = 0, limited_ = 0, left_ = 0;
   std::vector<AirState> state_, sorted_;
-  std::vector<float> x_, y_, z_, density_, acceleration_, extra_density_, extra_acceleration_;
-  std::vector<AirWalls::Sample> wall_;
-  std::vector<MovingWalls::Sample> moving_wall_;
-  std::vector<uint32_t> key_, cell_begin_, list_begin_, list_end_;
-  std::vector<uint8_t> cell_near_wall_;  // of kStanding and kMoving
-  std::vector<Chunk> chunks_;
-  std::vector<BodyPair> body_pairs_;
+  std::vector<size_t> chunk_limited_;
 };
-
-template <class Visit>
-void SphAir::for_ranges(const Eigen::Vector3f& low, const Eigen::Vector3f& high, const Visit& visit) const {
-  int first[3], last[3];
-  for (int k = 0; k < 3; ++k) first[k] = cell_along(low[k], k), last[k] = cell_along(high[k], k);
-  for (int z = first[2]; z <= last[2]; ++z)
-    for (int y = first[1]; y <= last[1]; ++y) {
-      const size_t row = size_t(cells_[0]) * (y + size_t(cells_[1]) * z);
-      const uint32_t begin = cell_begin_[row + first[0]], end = cell_begin_[row + last[0] + 1];
-      if (begin < end) visit(begin, end);
-    }
-}
 
 }  // namespace liana

@@ -85,7 +85,7 @@ Vec3 SphWind::velocity(const Vec3& position, double) const {
     return Vec3::Zero();
   Vec3 sum = Vec3::Zero();
   double cover = 0;
-  air_.for_ranges(x - reach, x + reach, [&](uint32_t begin, uint32_t end) {
+  air_.cells().for_ranges(x - reach, x + reach, [&](uint32_t begin, uint32_t end) {
     for (uint32_t j = begin; j < end; ++j) {
       const AirState& a = air_.states()[j];
       const double left = h * h - (Eigen::Vector3f(a.x, a.y, a.z) - x).squaredNorm();

@@ -19,6 +19,12 @@ struct SphWindParameters {
   uint64_t seed = 1;
   unsigned threads = 1;   ///< 0: one per core; the result does not depend on it
   bool portable = false;  ///< as AirOptions::portable
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(low, high, spacing, air_density, sound_over_speed, viscosity_ratio, max_particles, emitters, seed);
+    // not state: threads, portable: the same bits
+  }
 };
 
 /// Counts since the start.
@@ -28,6 +34,11 @@ struct SphWindReport {
   size_t emitted = 0, refused = 0;  ///< refused: no room in the domain, or an emitter in a solid
   size_t left = 0;                  ///< out of the domain or crushed, their places free for new ones
   size_t limited = 0;               ///< velocities that had to be cut to twice the speed of sound
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(particles, substeps, emitted, refused, left, limited);
+  }
 };
 
 class SphWind : public WindField {
@@ -49,6 +60,14 @@ class SphWind : public WindField {
   const SphAir& air() const { return air_; }
   double time() const { return time_; }
   SphWindReport report() const;
+
+  template <class Archive>
+  void persist(Archive& a) {
+    for (Emitter& emitter : emitters_) a(emitter);
+    a(air_, time_, report_);
+    // not state: walls_: set once
+    // not state: moving_: placed anew in every substep
+  }
 
  private:
   std::vector<Emitter> emitters_;

@@ -25,6 +25,11 @@ struct AmbientParameters {
   unsigned frequencies = 48;    ///< evenly spread on a log scale over 98 % of the variance
   unsigned waves = 3;           ///< of each frequency, in different directions
   uint64_t seed = 1;
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(mean, intensity, across, up, length_scale, coherence_decay, frequencies, waves, seed);
+  }
 };
 
 /// f S / σ² at n = f L / U.

@@ -27,7 +27,7 @@ double projected_area(const Particle& particle, const Vec3& u);
 /// ½ ρ C_d A |u|, with blades yielding.
 double drag_factor(const Plant& plant, ParticleId particle, const Vec3& relative, const DragOptions& options);
 
-/// The dashpot that makes a particle feel factor * (air - velocity at the end of the step), N.
+/// The dashpot that gives a particle the force factor * (air - velocity at the end of the step), N.
 WorldSpring drag_dashpot(const Plant& plant, ParticleId particle, double factor, const Vec3& air);
 
 /// Appends one dashpot per particle: F = ½ ρ C_d A |u| (wind - velocity). Linear in the velocity at the end

@@ -3,9 +3,10 @@
 
 #include "mesher/base/hash.h"
 #include "mesher/base/random.h"
+#include "runtime/app/scene/scene_preparation.h"
 #include "runtime/obstacles/box_mesh.h"
 #include "runtime/wind/air/sph_wind.h"
-#include "runtime/world/world.h"
+#include "runtime/world/world_drawing.h"
 
 namespace liana {
 namespace {
@@ -179,7 +180,7 @@ class PlateInAScene : public ::testing::Test {
   }
   static size_t behind(const World& world) {
     size_t count = 0;
-    for (const auto& streak : world.drawing().streaks) count += streak.to.x() > 1.35;
+    for (const auto& streak : drawing_of(world).streaks) count += streak.to.x() > 1.35;
     return count;
   }
   static void run(World& world, double seconds) {
@@ -189,7 +190,7 @@ class PlateInAScene : public ::testing::Test {
 };
 
 TEST_F(PlateInAScene, LetsTheWindThroughOnceItIsMovedAway) {
-  World world(scene_, 1);
+  World world(with_united_solids(scene_), 1);
   run(world, 1);
   EXPECT_GT(world.report().air->emitted, 500u);
   EXPECT_EQ(behind(world), 0u);
@@ -200,7 +201,7 @@ TEST_F(PlateInAScene, LetsTheWindThroughOnceItIsMovedAway) {
 TEST_F(PlateInAScene, ShutsTheWindOffOnceItIsThere) {
   scene_.obstacles[0].motion->keys = {{0, {0, 3.2, 0}, Quat::Identity()},
                                       {1, Vec3::Zero(), Quat::Identity()}};
-  World world(scene_, 1);
+  World world(with_united_solids(scene_), 1);
   run(world, 0.8);
   const size_t before = behind(world);
   EXPECT_GT(before, 100u);

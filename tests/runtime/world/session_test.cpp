@@ -11,6 +11,7 @@
 #include "mesher/base/files.h"
 #include "mesher/base/random.h"
 #include "runtime/view/editor_core.h"
+#include "runtime/world/world_drawing.h"
 #include "tests/support/scenes/busy_scene.h"
 
 namespace liana {
@@ -32,7 +33,7 @@ class Session : public ::testing::Test {
   WorldReport play(const std::string& name, uint64_t seed = 1) {
     World world(scene_, 2);
     SessionRecorder recorder(world, folder_ / name);
-    EditorCore core(recorder, {.width = 640, .height = 360, .camera = world.camera()});
+    EditorCore core(recorder, {.width = 640, .height = 360, .camera = camera_of(world)});
     Random random(seed, "tests/session");
     while (world.stats().steps < kSteps) {
       const double what = random.uniform();

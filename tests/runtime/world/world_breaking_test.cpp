@@ -4,8 +4,10 @@
 
 #include "materials/bake/bake_file.h"
 #include "mesher/base/error.h"
+#include "runtime/app/scene/scene_preparation.h"
 #include "runtime/obstacles/box_mesh.h"
-#include "runtime/world/world.h"
+#include "runtime/world/scene/scene_file.h"
+#include "runtime/world/world_drawing.h"
 #include "tests/support/plants/synthetic_bake.h"
 #include "tests/support/scenes/climber_scene.h"
 #include "tests/support/scratch_folder.h"
@@ -47,15 +49,15 @@ class BreakingWorld : public ::testing::Test {
 
 TEST_F(BreakingWorld, CutPartFallsLiesStillAndIsTakenAway) {
   scene_.plants = {tree(0)};
-  scene_.fallen.remove_after = 2;
+  scene_.detached.remove_after = 2;
   World world(scene_, 1);
-  const size_t particles = world.report().particles, tubes = world.drawing(true).tubes.size();
+  const size_t particles = world.report().particles, tubes = drawing_of(world, true).tubes.size();
   const ParticleId at = world.plant(0).branches[1].particles[1];
   world.cut(0, at);
   ASSERT_EQ(world.plant_count(), 2u);
   EXPECT_EQ(world.report().cut, 1u);
   EXPECT_EQ(world.report().particles, particles);
-  EXPECT_GE(world.drawing(true).tubes.size(), tubes) << "the part is drawn as well";
+  EXPECT_GE(drawing_of(world, true).tubes.size(), tubes) << "the part is drawn as well";
   run(world, 0.5);
   for (int i = 0; i < 400 && world.report().asleep == 0; ++i) world.step();
   EXPECT_EQ(world.report().asleep, 1u) << "it rests within 10 s";
@@ -146,7 +148,7 @@ TEST_F(BreakingWorld, ClimberIsCutByTheSceneAndGrowsOn) {
   wall.mesh = box_mesh({-2, 0, -0.2}, {2, 3, 0});
   scene_.obstacles = {wall};
   scene_.cuts = {{{.climber = true, .index = 0, .domain = "", .along = 0, .at = {0, 0.4, 0}}, 9}};
-  World world(scene_, 2);
+  World world(with_united_solids(scene_), 2);
   run(world, 9.1);
   EXPECT_EQ(world.report().cut, 1u);
   ASSERT_EQ(world.plant_count(), 2u);
@@ -165,18 +167,38 @@ TEST_F(BreakingWorld, SceneFileIsReadStrictly) {
   const Scene scene = read("[[cut]]\ndomain = \"" + names_[1] +
                            "\"\nalong = 0.5\ntime = 2\n"
                            "[[grab]]\nat = [0, 1, 0]\ntime = 1\nseconds = 2\npath = [{ by = [1, 0, 0] }]\n"
-                           "[fallen]\nremove_after = 5\n");
+                           "[detached]\nremove_after = 5\n");
   EXPECT_EQ(scene.plants[0].breaking, 0.5);
   ASSERT_EQ(scene.cuts.size(), 1u);
   EXPECT_EQ(scene.cuts[0].where.along, 0.5);
   ASSERT_EQ(scene.grabs.size(), 1u);
   EXPECT_EQ(scene.grabs[0].path[0], Vec3(1, 0, 0));
-  EXPECT_EQ(scene.fallen.remove_after, 5);
+  EXPECT_EQ(scene.detached.remove_after, 5);
   EXPECT_THROW(read("[[cut]]\ntime = 1\n"), Error);
   EXPECT_THROW(read("[[cut]]\nclimber = 0\nat = [0, 1, 0]\n"), Error);
   EXPECT_THROW(read("[[grab]]\nat = [0, 1, 0]\nseconds = 1\npath = []\n"), Error);
   EXPECT_THROW(read("[[grab]]\nat = [0, 1, 0]\nseconds = 1\npath = [{ bye = [1, 0, 0] }]\n"), Error);
   EXPECT_THROW(World(read("[[cut]]\ndomain = \"no such branch\"\n"), 1), Error);
+}
+
+TEST_F(BreakingWorld, OldNamesInSceneFilesMeanWhatTheyDid) {
+  const auto read = [&](bool old) {
+    const std::string first = "[[plant]]\nbake = \"tree.bake\"\n",
+                      box = "box = { center = [0, 1, 0], size = [1, 1, 1] }\n";
+    const std::string act = "domain = \"" + names_[1] + "\"\nvelocity = [1, 0, 0]\n";
+    std::ofstream(folder_ / "scene.toml")
+        << first << (old ? "[[pluck]]\n" : "[[impulse]]\n") << act << "[[obstacle]]\n"
+        << box << (old ? "elasticity = 0.5\n" : "restitution = 0.5\n")
+        << (old ? "[fallen]\n" : "[detached]\n") << "roots_hold = 7\n";
+    return read_scene(folder_ / "scene.toml");
+  };
+  for (const bool old : {false, true}) {
+    const Scene scene = read(old);
+    ASSERT_EQ(scene.impulses.size(), 1u);
+    EXPECT_EQ(scene.impulses[0].velocity, Vec3(1, 0, 0));
+    EXPECT_EQ(scene.obstacles.at(0).contact_material.elasticity, 0.5);
+    EXPECT_EQ(scene.detached.roots_hold, 7);
+  }
 }
 
 TEST_F(BreakingWorld, ObstaclesAreReadFromObjAndPly) {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "materials/bake/bake_file.h"
+#include "runtime/app/scene/scene_preparation.h"
 #include "runtime/obstacles/box_mesh.h"
-#include "runtime/world/scene_file.h"
 #include "tests/support/plants/synthetic_bake.h"
 #include "tests/support/scenes/climber_scene.h"
 #include "tests/support/scratch_folder.h"
@@ -40,8 +40,8 @@ inline Scene busy_scene(const ScratchFolder& folder) {
   air.low = {-2.5, 0, 0}, air.high = {2.5, 3, 2.5};
   air.emitters = {emitter};
   scene.wind.air = air;
-  scene.fallen.remove_after = 1;
-  return scene;
+  scene.detached.remove_after = 1;
+  return with_united_solids(std::move(scene));
 }
 
 }  // namespace liana::test

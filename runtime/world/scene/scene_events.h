@@ -1,8 +1,9 @@
-// What is done to the plants of a scene: [[cut]], [[grab]], and [fallen] for what becomes of it.
+// What is done to the plants of a scene: [[impulse]], [[cut]], [[grab]], and [detached] for what becomes of
+// it.
 #pragma once
 
 #include "materials/law/toml_table.h"
-#include "runtime/world/scene_file.h"
+#include "runtime/world/scene/scene.h"
 
 namespace liana {
 

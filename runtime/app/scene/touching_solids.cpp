@@ -1,4 +1,4 @@
-#include "runtime/world/touching_solids.h"
+#include "runtime/app/scene/touching_solids.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -60,21 +60,22 @@ Candidate candidate(const Mesh& mesh) {
 
 }  // namespace
 
-void unite_touching(std::vector<StandingSolid>& solids) {
+void unite_touching(std::vector<SceneSolid>& solids) {
   std::vector<Candidate> candidates;
-  for (const StandingSolid& solid : solids) candidates.push_back(candidate(solid.mesh));
-  std::vector<StandingSolid> united;
+  for (const SceneSolid& solid : solids) candidates.push_back(candidate(solid.mesh));
+  std::vector<SceneSolid> united;
   std::vector<uint8_t> taken(solids.size(), 0);
   for (size_t first = 0; first < solids.size(); ++first) {
     if (taken[first]) continue;
-    StandingSolid group = solids[first];
+    SceneSolid group = solids[first];
     if (candidates[first].may_unite) {
       SolidUnion all(candidates[first].grown);
       std::vector<size_t> members{first};
       double finest = candidates[first].voxel;
       const auto joins = [&](size_t other) {
         const Candidate& c = candidates[other];
-        if (taken[other] || !c.may_unite || !(solids[other].feel == group.feel)) return false;
+        if (taken[other] || !c.may_unite || !(solids[other].contact_material == group.contact_material))
+          return false;
         const bool near = std::any_of(members.begin(), members.end(), [&](size_t member) {
           const Candidate& m = candidates[member];
           return (m.low.array() <= c.high.array()).all() && (c.low.array() <= m.high.array()).all();

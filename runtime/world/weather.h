@@ -5,15 +5,15 @@
 
 #include "runtime/wind/air/plant_coupling.h"
 #include "runtime/wind/field/sheltered_wind.h"
-#include "runtime/world/scene_file.h"
+#include "runtime/world/scene/scene.h"
 
 namespace liana {
 
-class WorldWind {
+class Weather {
  public:
   /// Solids, those that stand still and those that move, must outlive it. Throws Error{Input}.
-  WorldWind(const Scene& scene, const std::vector<const SdfObstacle*>& standing,
-            const std::vector<const SdfObstacle*>& moving, double ground_height, unsigned threads);
+  Weather(const Scene& scene, std::span<const SdfObstacle* const> standing,
+          std::span<const SdfObstacle* const> moving, double ground_height, unsigned threads);
 
   bool has_air() const { return air_ != nullptr; }
   /// Before the plants' steps, with all of them: moves the air and finds what it does to them.
@@ -27,6 +27,14 @@ class WorldWind {
 
   const SphWind* air() const { return air_.get(); }
   double seconds() const { return seconds_; }  ///< spent in advance() and react() so far
+
+  template <class Archive>
+  void persist(Archive& a) {
+    if (air_) a(*air_);
+    // not state: open_, sheltered_: functions of the scene, place and time
+    // not state: coupling_: made anew in every step
+    // not state: seconds_: of a clock on the wall
+  }
 
  private:
   std::unique_ptr<WindField> open_;  // null without a wind everywhere

@@ -13,6 +13,10 @@ struct ObstacleMotion {
     double time;    // s
     Vec3 offset;    // m, from where the obstacle is modelled
     Quat rotation;  // about the pivot
+    template <class Archive>
+    void persist(Archive& a) {
+      a(time, offset, rotation);
+    }
   };
   Vec3 pivot = Vec3::Zero();     ///< m, world, where the obstacle is modelled
   Vec3 velocity = Vec3::Zero();  ///< m/s
@@ -24,6 +28,11 @@ struct ObstacleMotion {
 
   /// Where it is at time `to` (s), with the velocities that bring it there from where it was at `from`.
   ObstaclePose between(double from, double to) const;
+
+  template <class Archive>
+  void persist(Archive& a) {
+    a(pivot, velocity, swing, period, turn, start, stop, keys);
+  }
 };
 
 /// Reads [obstacle.motion]. Throws Error{Input} with file and line.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "materials/law/toml_table.h"
-#include "runtime/world/scene_file.h"
+#include "runtime/world/scene/scene.h"
 
 namespace liana {
 

@@ -1,4 +1,4 @@
-#include "runtime/world/scene_file.h"
+#include "runtime/world/scene/scene_file.h"
 
 #include <fmt/core.h>
 
@@ -9,8 +9,8 @@
 #include "mesher/io/plant_file.h"
 #include "runtime/growth/climber_parameters.h"
 #include "runtime/obstacles/box_mesh.h"
-#include "runtime/world/scene_events.h"
-#include "runtime/world/scene_wind.h"
+#include "runtime/world/scene/scene_events.h"
+#include "runtime/world/scene/scene_wind.h"
 
 namespace liana {
 namespace {
@@ -45,10 +45,11 @@ Mesh read_obstacle_mesh(const std::filesystem::path& path) {
   return all;
 }
 
-ContactFeel read_feel(const TomlTable& table) {
+ContactFeel read_contact_material(const TomlTable& table) {
   const ContactFeel usual;
+  const char* restitution = table.has("elasticity") ? "elasticity" : "restitution";  // its old name
   return {table.number_or("friction", usual.friction, 0, 1),
-          table.number_or("elasticity", usual.elasticity, 0, 1)};
+          table.number_or(restitution, usual.elasticity, 0, 1)};
 }
 
 /// Scales, rotates and moves a mesh about a point. Exact: its distance field is that of the moved mesh.
@@ -68,7 +69,7 @@ SceneObstacle read_obstacle(const TomlTable& table) {
   if (look != "plain" && look != "bricks") table.fail("look", "must be \"plain\" or \"bricks\"");
   obstacle.bricks = look == "bricks";
 
-  obstacle.feel = read_feel(table);
+  obstacle.contact_material = read_contact_material(table);
   if (table.has("thickness")) obstacle.thickness = table.number("thickness", 5e-4, 1);
   Vec3 pivot = Vec3::Zero();
 
@@ -98,17 +99,6 @@ ScenePlant read_plant_entry(const TomlTable& table) {
                    table.number_or("yaw", 0, -360, 360) * kPi / 180, table.number_or("breaking", 0, 0, 1)};
   table.refuse_unknown_keys();
   return plant;
-}
-
-ScenePluck read_pluck(const TomlTable& table, size_t plants) {
-  constexpr double kFastest = 100;  // m/s
-  if (plants == 0)
-    table.fail("plant", "is none: the scene has no [[plant]] to pluck", "add [[plant]] bake = \"...\"");
-  ScenePluck pluck{static_cast<size_t>(table.integer_or("plant", 0, 0, static_cast<int64_t>(plants) - 1)),
-                   table.text("domain"), table.number_or("time", 0, 0, 86400), table.vector("velocity")};
-  if (pluck.velocity.norm() > kFastest) table.fail("velocity", "is above 100 m/s");
-  table.refuse_unknown_keys();
-  return pluck;
 }
 
 SceneClimber read_climber(const TomlTable& table) {
@@ -164,14 +154,12 @@ Scene read_scene(const std::filesystem::path& path) {
     if (!scene.plant_contacts)
       touch->fail("friction", "means nothing while plants do not touch each other",
                   "set plant_contacts = true");
-    scene.plant_feel = read_feel(*touch);
+    scene.plant_contact_material = read_contact_material(*touch);
     touch->refuse_unknown_keys();
   }
   for (const TomlTable& entry : table.tables("obstacle")) scene.obstacles.push_back(read_obstacle(entry));
   for (const TomlTable& entry : table.tables("plant")) scene.plants.push_back(read_plant_entry(entry));
   for (const TomlTable& entry : table.tables("climber")) scene.climbers.push_back(read_climber(entry));
-  for (const TomlTable& entry : table.tables("pluck"))
-    scene.plucks.push_back(read_pluck(entry, scene.plants.size()));
   read_scene_events(table, scene);
   table.refuse_unknown_keys();
   if (scene.plants.empty() && scene.climbers.empty())

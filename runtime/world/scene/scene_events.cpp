@@ -1,4 +1,4 @@
-#include "runtime/world/scene_events.h"
+#include "runtime/world/scene/scene_events.h"
 
 namespace liana {
 namespace {
@@ -25,6 +25,18 @@ ScenePoint read_point(const TomlTable& table, const Scene& scene) {
   return point;
 }
 
+SceneImpulse read_impulse(const TomlTable& table, size_t plants) {
+  constexpr double kFastest = 100;  // m/s
+  if (plants == 0)
+    table.fail("plant", "is none: the scene has no [[plant]] to strike", "add [[plant]] bake = \"...\"");
+  SceneImpulse impulse{static_cast<size_t>(table.integer_or("plant", 0, 0, static_cast<int64_t>(plants) - 1)),
+                       table.text("domain"), table.number_or("time", 0, 0, kLongest),
+                       table.vector("velocity")};
+  if (impulse.velocity.norm() > kFastest) table.fail("velocity", "is above 100 m/s");
+  table.refuse_unknown_keys();
+  return impulse;
+}
+
 SceneGrab read_grab(const TomlTable& table, const Scene& scene) {
   SceneGrab grab{read_point(table, scene),
                  table.number_or("time", 0, 0, kLongest),
@@ -43,16 +55,21 @@ SceneGrab read_grab(const TomlTable& table, const Scene& scene) {
 }  // namespace
 
 void read_scene_events(const TomlTable& table, Scene& scene) {
+  for (const char* name : {"impulse", "pluck"})  // the second is its old name
+    for (const TomlTable& entry : table.tables(name))
+      scene.impulses.push_back(read_impulse(entry, scene.plants.size()));
   for (const TomlTable& entry : table.tables("cut")) {
     scene.cuts.push_back({read_point(entry, scene), entry.number_or("time", 0, 0, kLongest)});
     entry.refuse_unknown_keys();
   }
   for (const TomlTable& entry : table.tables("grab")) scene.grabs.push_back(read_grab(entry, scene));
-  if (const auto fallen = table.table("fallen")) {
-    scene.fallen.roots_hold = fallen->number_or("roots_hold", scene.fallen.roots_hold, 0, kLongest);
-    scene.fallen.remove_after = fallen->number_or("remove_after", scene.fallen.remove_after, 0, kLongest);
-    fallen->refuse_unknown_keys();
-  }
+  if (table.has("detached") && table.has("fallen"))
+    table.fail("fallen", "is the old name of 'detached', which is there as well", "keep one of them");
+  const auto detached = table.table(table.has("fallen") ? "fallen" : "detached");
+  if (!detached) return;
+  scene.detached.roots_hold = detached->number_or("roots_hold", scene.detached.roots_hold, 0, kLongest);
+  scene.detached.remove_after = detached->number_or("remove_after", scene.detached.remove_after, 0, kLongest);
+  detached->refuse_unknown_keys();
 }
 
 }  // namespace liana

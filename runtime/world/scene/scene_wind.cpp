@@ -1,4 +1,4 @@
-#include "runtime/world/scene_wind.h"
+#include "runtime/world/scene/scene_wind.h"
 
 #include <fmt/core.h>
 

@@ -1,4 +1,4 @@
-#include "runtime/world/world_wind.h"
+#include "runtime/world/weather.h"
 
 #include "mesher/base/stopwatch.h"
 #include "runtime/wind/field/steady_gust_wind.h"
@@ -19,11 +19,11 @@ std::unique_ptr<WindField> open_wind(const SceneWind& wind, uint64_t seed) {
 
 }  // namespace
 
-WorldWind::WorldWind(const Scene& scene, const std::vector<const SdfObstacle*>& standing,
-                     const std::vector<const SdfObstacle*>& moving, double ground_height, unsigned threads)
+Weather::Weather(const Scene& scene, std::span<const SdfObstacle* const> standing,
+                 std::span<const SdfObstacle* const> moving, double ground_height, unsigned threads)
     : open_(open_wind(scene.wind, scene.seed)) {
   if (open_) {
-    std::vector<const SdfObstacle*> all = standing;
+    std::vector<const SdfObstacle*> all(standing.begin(), standing.end());
     all.insert(all.end(), moving.begin(), moving.end());
     sheltered_ = std::make_unique<ShelteredWind>(*open_, std::move(all), ground_height);
   }
@@ -34,15 +34,15 @@ WorldWind::WorldWind(const Scene& scene, const std::vector<const SdfObstacle*>& 
   coupling_ = std::make_unique<PlantCoupling>(air_->air());
 }
 
-void WorldWind::advance(std::span<const PlantInWind> plants, double time, double dt) {
+void Weather::advance(std::span<const PlantInWind> plants, double time, double dt) {
   seconds_ += timed([&] {
     air_->step(dt, coupling_->set_bodies(plants));
     coupling_->find(plants, sheltered_.get(), time, dt);
   });
 }
 
-void WorldWind::add_to(size_t index, const Plant& plant, double time, std::vector<WorldSpring>& springs,
-                       std::vector<Wrench>& wrenches) const {
+void Weather::add_to(size_t index, const Plant& plant, double time, std::vector<WorldSpring>& springs,
+                     std::vector<Wrench>& wrenches) const {
   if (!air_) {
     if (sheltered_) add_wind(plant, *sheltered_, time, {}, springs);
     return;
@@ -52,7 +52,7 @@ void WorldWind::add_to(size_t index, const Plant& plant, double time, std::vecto
   coupling_->add_pressure(index, wrenches);
 }
 
-void WorldWind::react(std::span<const PlantInWind> plants) {
+void Weather::react(std::span<const PlantInWind> plants) {
   seconds_ += timed([&] { coupling_->react(plants); });
 }
 

@@ -1,21 +1,20 @@
-#include "runtime/world/touching_solids.h"
-
 #include <gtest/gtest.h>
 
+#include "runtime/app/scene/touching_solids.h"
 #include "runtime/obstacles/box_mesh.h"
 #include "runtime/obstacles/sdf_obstacle.h"
 
 namespace liana {
 namespace {
 
-StandingSolid box(const Vec3& low, const Vec3& high, double friction = 0.6) {
+SceneSolid box(const Vec3& low, const Vec3& high, double friction = 0.6) {
   return {box_mesh(low, high), {.friction = friction}};
 }
 
 TEST(TouchingSolids, TheFaceBetweenThemIsNoWayOut) {
   // A bar of 1 cm before a rail, face to face, and another rail that it touches as well.
-  std::vector<StandingSolid> solids{box({-0.005, 0, -0.01}, {0.005, 1, 0}),
-                                    box({-1, 0.2, 0}, {1, 0.23, 0.012}), box({-1, 0.7, 0}, {1, 0.73, 0.012})};
+  std::vector<SceneSolid> solids{box({-0.005, 0, -0.01}, {0.005, 1, 0}), box({-1, 0.2, 0}, {1, 0.23, 0.012}),
+                                 box({-1, 0.7, 0}, {1, 0.73, 0.012})};
   unite_touching(solids);
   ASSERT_EQ(solids.size(), 1u);
   const SdfObstacle fence(solids[0].mesh, {.voxel = solids[0].voxel});
@@ -27,10 +26,10 @@ TEST(TouchingSolids, TheFaceBetweenThemIsNoWayOut) {
       << "elsewhere, it is what it was";
 }
 
-TEST(TouchingSolids, WhatIsApartOrFeelsDifferentStaysItself) {
-  std::vector<StandingSolid> solids{box({0, 0, 0}, {1, 1, 1}), box({1.001, 0, 0}, {2, 1, 1}),
-                                    box({0, 1, 0}, {1, 2, 1}, 0.2)};
-  const std::vector<StandingSolid> before = solids;
+TEST(TouchingSolids, WhatIsApartOrOfAnotherMaterialStaysItself) {
+  std::vector<SceneSolid> solids{box({0, 0, 0}, {1, 1, 1}), box({1.001, 0, 0}, {2, 1, 1}),
+                                 box({0, 1, 0}, {1, 2, 1}, 0.2)};
+  const std::vector<SceneSolid> before = solids;
   unite_touching(solids);
   ASSERT_EQ(solids.size(), 3u);
   for (size_t i = 0; i < 3; ++i) EXPECT_EQ(solids[i].mesh.positions, before[i].mesh.positions) << i;
@@ -40,7 +39,7 @@ TEST(TouchingSolids, ASurfaceThroughItselfIsLeftAlone) {
   Mesh knot = box_mesh({0, 0, 0}, {1, 1, 1});
   for (Vec3& p : knot.positions)
     if (p == Vec3::Zero()) p = {0.4, 0.5, 1.5};  // out through the top
-  std::vector<StandingSolid> solids{{knot, {}}, box({0, 0, 0.9}, {1, 1, 2})};
+  std::vector<SceneSolid> solids{{knot, {}}, box({0, 0, 0.9}, {1, 1, 2})};
   unite_touching(solids);
   EXPECT_EQ(solids.size(), 2u);
 }

@@ -1,4 +1,4 @@
-#include "runtime/world/obstacle_motion.h"
+#include "runtime/world/scene/obstacle_motion.h"
 
 #include <fmt/core.h>
 
