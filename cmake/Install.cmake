@@ -7,3 +7,10 @@ install(EXPORT liana NAMESPACE liana:: DESTINATION lib/cmake/liana FILE targets.
 install(FILES cmake/liana-config.cmake DESTINATION lib/cmake/liana COMPONENT library)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/liana-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/liana-config-version.cmake DESTINATION lib/cmake/liana COMPONENT library)
+# An OpenMesh that was only unpacked goes along.
+if(OPENMESH_LIBRARY MATCHES "^${PROJECT_SOURCE_DIR}/build/vendor/")
+  file(GLOB openmesh ${OPENMESH_LIBRARY}*)
+  install(FILES ${openmesh} DESTINATION lib COMPONENT library)
+  install(FILES ${openmesh} DESTINATION lib COMPONENT program)
+endif()
+set_target_properties(liana PROPERTIES INSTALL_RPATH "$ORIGIN/../lib")

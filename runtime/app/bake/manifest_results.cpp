@@ -16,7 +16,7 @@ namespace liana {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 using State = ItemResult::State;
 
 uint64_t add(const std::string& bytes, uint64_t hash) {
@@ -26,9 +26,9 @@ uint64_t add(const std::string& bytes, uint64_t hash) {
 /// The files beside a .gltf that hold its meshes.
 std::vector<fs::path> buffers_of(const fs::path& plant, const std::string& text) {
   std::vector<fs::path> files;
-  const Json gltf = Json::parse(text, nullptr, false);
+  const OrderedJson gltf = OrderedJson::parse(text, nullptr, false);
   if (!gltf.is_object() || !gltf.contains("buffers") || !gltf["buffers"].is_array()) return files;
-  for (const Json& buffer : gltf["buffers"]) {
+  for (const OrderedJson& buffer : gltf["buffers"]) {
     if (!buffer.is_object()) continue;
     const auto uri = buffer.find("uri");
     if (uri == buffer.end() || !uri->is_string()) continue;
@@ -53,7 +53,7 @@ const char* state_name(State state) {
   return "waiting";
 }
 
-Json to_json(const ManifestItem& item, const ItemResult& result) {
+OrderedJson to_json(const ManifestItem& item, const ItemResult& result) {
   return {{"plant", item.plant.string()},   {"species", item.species},
           {"output", item.output.string()}, {"state", state_name(result.state)},
           {"domains", result.domains},      {"left_out", result.left_out},
@@ -61,8 +61,8 @@ Json to_json(const ManifestItem& item, const ItemResult& result) {
           {"key", hash_text(result.key)},   {"output_hash", hash_text(result.output_hash)}};
 }
 
-std::string dump(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+std::string dump(const OrderedJson& json) {
+  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 std::string said(const ItemResult& result) {
@@ -101,7 +101,7 @@ ItemResult read_result(const fs::path& manifest, const ManifestItem& item, uint6
   const fs::path file = result_file(manifest, item);
   if (!fs::exists(file)) return {};
   try {
-    const Json json = Json::parse(read_file(file));
+    const OrderedJson json = OrderedJson::parse(read_file(file));
     ItemResult result;
     result.key = key;
     if (json.at("key") != hash_text(key)) return {};
@@ -146,7 +146,7 @@ std::string results_table(const std::vector<ManifestItem>& items, const std::vec
 }
 
 std::string results_json(const std::vector<ManifestItem>& items, const std::vector<ItemResult>& results) {
-  Json json{{"plants", Json::array()}};
+  OrderedJson json{{"plants", OrderedJson::array()}};
   for (size_t i = 0; i < items.size(); ++i) json["plants"].push_back(to_json(items[i], results[i]));
   return dump(json);
 }

@@ -1,4 +1,5 @@
-// The closed loop: does what was baked move as baked? Every domain is plucked in the simulator and measured.
+// The closed loop: does what was baked move as baked? Every domain is let swing in the simulator and
+// measured.
 #pragma once
 
 #include <string>
@@ -38,7 +39,7 @@ struct VerifyReport {
   Standing standing;  ///< of the whole plant under gravity; no part of `within`
 };
 
-/// Makes the plant, then per domain: parent held, descendants' mass lumped, plucked, stepped, measured.
+/// Makes the plant, then per domain: parent held, descendants' mass lumped, struck, stepped, measured.
 /// threads = 0: one per core; the result does not depend on it. Throws Error{Input} for a bake without
 /// domains, Error{Cancelled}.
 VerifyReport verify_bake(const Bake& bake, const VerifyOptions& options, unsigned threads,

@@ -10,7 +10,7 @@
 namespace liana {
 namespace {
 
-DampedSinusoid pluck(const Plant& plant, BranchId branch) {
+DampedSinusoid free_swing(const Plant& plant, BranchId branch) {
   HeldChain chain;
   chain.build(plant, branch, carried_masses(plant));
   chain.lowest_eigenvalue();
@@ -24,7 +24,7 @@ TEST(Calibration, ChainOfTwentySwingsAsWantedAtEveryStep) {
         Plant plant = test::rod_plant({.frequency = frequency, .damping_factor = xi}, 20);
         const CalibrationReport report = calibrate_plant(plant, {.dt = dt});
         EXPECT_TRUE(report.note.empty()) << "the default scheme serves all of these";
-        const DampedSinusoid swing = pluck(plant, BranchId(0));
+        const DampedSinusoid swing = free_swing(plant, BranchId(0));
         EXPECT_NEAR(swing.frequency, frequency, 1e-3 * frequency) << frequency << ' ' << xi << ' ' << dt;
         EXPECT_NEAR(swing.damping_factor, xi, 1e-2 * xi) << frequency << ' ' << xi << ' ' << dt;
       }
@@ -34,7 +34,7 @@ TEST(Calibration, DoesNotDependOnTheNumberOfParticles) {
   for (int n : {1, 2, 5, 24}) {
     Plant plant = test::rod_plant({.frequency = 1.7, .damping_factor = 0.04}, n);
     calibrate_plant(plant);
-    const DampedSinusoid swing = pluck(plant, BranchId(0));
+    const DampedSinusoid swing = free_swing(plant, BranchId(0));
     EXPECT_NEAR(swing.frequency, 1.7, 1.7e-3) << n << " particles";
     EXPECT_NEAR(swing.damping_factor, 0.04, 4e-4) << n << " particles";
   }
@@ -44,7 +44,7 @@ TEST(Calibration, FlatLeafIsSoftAboutOneAxisAndStiffAboutTheOther) {
   for (int n : {1, 4}) {
     Plant plant = test::rod_plant({.length = 0.08, .radius = 0.012, .frequency = 4, .flatness = 5}, n);
     calibrate_plant(plant);
-    EXPECT_NEAR(pluck(plant, BranchId(0)).frequency, 4, 4e-3);
+    EXPECT_NEAR(free_swing(plant, BranchId(0)).frequency, 4, 4e-3);
     const Joint& base = plant.particles[0].joint;
     EXPECT_NEAR(base.bend_stiffness.z(), 25 * base.bend_stiffness.x(), 1e-6 * base.bend_stiffness.z());
   }
@@ -58,18 +58,18 @@ TEST(Calibration, TakesTheSmallestChangeOfSchemeThatServesEveryBranchAndSaysSo) 
   EXPECT_EQ(report.beyond_wanted.size(), 1u);
   EXPECT_TRUE(report.out_of_range.empty());
   EXPECT_FALSE(report.note.empty());
-  EXPECT_NEAR(pluck(plant, BranchId(0)).frequency, 9, 9e-3);
+  EXPECT_NEAR(free_swing(plant, BranchId(0)).frequency, 9, 9e-3);
 
   Plant fast = test::rod_plant({.frequency = 35, .damping_factor = 0.05}, 8);  // beyond half the step rate
   EXPECT_GT(calibrate_plant(fast).scheme.substeps, 1);
-  EXPECT_NEAR(pluck(fast, BranchId(0)).frequency, 35, 35e-3);
+  EXPECT_NEAR(free_swing(fast, BranchId(0)).frequency, 35, 35e-3);
 }
 
 TEST(Calibration, UndampedBranchKeepsSwinging) {
   Plant plant = test::rod_plant({.frequency = 1, .damping_factor = 0}, 8);
   const CalibrationReport report = calibrate_plant(plant);
   EXPECT_TRUE(report.out_of_range.empty());
-  EXPECT_NEAR(pluck(plant, BranchId(0)).damping_factor, 0, 1e-4);
+  EXPECT_NEAR(free_swing(plant, BranchId(0)).damping_factor, 0, 1e-4);
 }
 
 TEST(Calibration, ImpossibleTargetIsReportedAndLeavesAUsablePlant) {
@@ -102,7 +102,7 @@ TEST(Recalibration, DoesNotPop) {
   ASSERT_TRUE(recalibrate(plant, BranchId(0), carried_masses(plant), chain));
   for (int i = 0; i < 200; ++i) stepper.step(plant, {}, {}, sideways);
   EXPECT_NEAR((plant.motion.back().position - bent).norm(), 0, 1e-6);
-  EXPECT_NEAR(pluck(plant, BranchId(0)).frequency, 2, 2e-3);
+  EXPECT_NEAR(free_swing(plant, BranchId(0)).frequency, 2, 2e-3);
 }
 
 }  // namespace

@@ -11,12 +11,12 @@
 namespace liana {
 namespace {
 
-struct Pluck {
+struct FreeSwing {
   DampedSinusoid swing;
   bool served;
 };
 
-Pluck pluck(double frequency, double damping_factor, int particles, double dt) {
+FreeSwing free_swing(double frequency, double damping_factor, int particles, double dt) {
   Plant plant = test::rod_plant({.frequency = frequency, .damping_factor = damping_factor}, particles);
   const bool served = calibrate_plant(plant, {.dt = dt}).out_of_range.empty();
   HeldChain chain;
@@ -29,7 +29,7 @@ TEST(ClosedLoop, MeetsItsBarsFromThreeTenthsToTenHertzAtThePapersStep) {
   double worst_frequency = 0, worst_damping = 0;
   for (const double frequency : {0.3, 0.7, 1.5, 3.0, 6.0, 10.0})
     for (const double xi : {0.005, 0.02, 0.1, 0.3, 0.6}) {
-      const Pluck p = pluck(frequency, xi, 12, 0.025);
+      const FreeSwing p = free_swing(frequency, xi, 12, 0.025);
       ASSERT_TRUE(p.served && p.swing.found) << frequency << ' ' << xi;
       const double off = std::abs(p.swing.frequency / frequency - 1);
       const double damping_off = std::abs(p.swing.damping_factor - xi), bar = std::max(0.0005, 0.02 * xi);
@@ -49,7 +49,7 @@ TEST(ClosedLoop, DoesNotDependOnStepNorOnNumberOfParticles) {
       double low = 1e9, high = 0, least = 1e9, most = 0;
       for (const double dt : {0.025, 0.0125, 0.005})
         for (const int particles : {10, 30, 100}) {
-          const Pluck p = pluck(frequency, xi, particles, dt);
+          const FreeSwing p = free_swing(frequency, xi, particles, dt);
           low = std::min(low, p.swing.frequency);
           high = std::max(high, p.swing.frequency);
           least = std::min(least, p.swing.damping_factor);

@@ -96,7 +96,7 @@ TEST(WholePlantModes, FirstTenOfAForkedTreeAreThoseOfBeams) {
   }
 }
 
-// The stepped motion, not only the matrices: plucked in its lowest mode, the tree swings at the beams'
+// The stepped motion, not only the matrices: let go in its lowest mode, the tree swings at the beams'
 // frequency.
 TEST(WholePlantModes, SteppedTreeSwingsAtTheLowestOfThem) {
   const test::Frame frame = forked_frame(16);
