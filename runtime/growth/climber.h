@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "materials/law/species_law.h"
-#include "runtime/growth/embodiment.h"
+#include "runtime/growth/embodiment/embodiment.h"
 #include "runtime/growth/shoots.h"
 
 namespace liana {

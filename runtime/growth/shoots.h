@@ -6,7 +6,7 @@
 #include "materials/law/species_law.h"
 #include "runtime/growth/anchors.h"
 #include "runtime/growth/crowding.h"
-#include "runtime/growth/embodiment.h"
+#include "runtime/growth/embodiment/embodiment.h"
 #include "runtime/growth/leaves.h"
 #include "runtime/growth/segments.h"
 #include "runtime/growth/shoot_growth.h"

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "runtime/growth/grown_weight.h"
+#include "runtime/growth/embodiment/grown_weight.h"
+#include "runtime/growth/embodiment/thickening.h"
 #include "runtime/growth/segments.h"
-#include "runtime/growth/thickening.h"
 #include "runtime/sim/model/rod_section.h"
 #include "runtime/sim/step/joints.h"
 #include "runtime/sim/step/time_step.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "runtime/growth/climber.h"
-#include "runtime/growth/grown_weight.h"
+#include "runtime/growth/embodiment/grown_weight.h"
 #include "runtime/sim/model/topology.h"
 #include "runtime/sim/step/joints.h"
 #include "tests/support/scenes/climber_scene.h"

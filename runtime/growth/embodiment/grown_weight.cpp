@@ -1,4 +1,4 @@
-#include "runtime/growth/grown_weight.h"
+#include "runtime/growth/embodiment/grown_weight.h"
 
 namespace liana {
 

@@ -7,7 +7,7 @@
 
 #include "materials/law/species_law.h"
 #include "runtime/growth/climber_parameters.h"
-#include "runtime/growth/grown_weight.h"
+#include "runtime/growth/embodiment/grown_weight.h"
 #include "runtime/sim/calibrate/calibration.h"
 #include "runtime/sim/model/remap.h"
 

@@ -1,11 +1,11 @@
-#include "runtime/growth/embodiment.h"
+#include "runtime/growth/embodiment/embodiment.h"
 
 #include <algorithm>
 
 #include "mesher/base/fixed_math.h"
+#include "runtime/growth/embodiment/thickening.h"
 #include "runtime/growth/growth_weights.h"
 #include "runtime/growth/segments.h"
-#include "runtime/growth/thickening.h"
 #include "runtime/sim/model/rod_section.h"
 #include "runtime/sim/step/joints.h"
 

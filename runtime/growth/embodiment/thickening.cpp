@@ -1,4 +1,4 @@
-#include "runtime/growth/thickening.h"
+#include "runtime/growth/embodiment/thickening.h"
 
 #include <algorithm>
 #include <cmath>
