@@ -7,8 +7,8 @@
 
 #include "mesher/base/hash.h"
 #include "mesher/geometry/mesh_checks.h"
-#include "mesher/solids/solidify/attachment.h"
 #include "mesher/solids/solidify/sheet.h"
+#include "mesher/solids/solidify/support.h"
 
 namespace liana {
 namespace {
@@ -112,7 +112,7 @@ bool attached_alike(const SegmentedPlant& plant, DomainId source, const SolidDom
     const Mesh& surface = plant.domains[domain.index()].surface;
     std::vector<uint32_t> all(surface.positions.size());
     std::iota(all.begin(), all.end(), 0u);
-    return surface.positions[Attachment(plant, domain).nearest(surface, all)];
+    return surface.positions[Support(plant, domain).nearest(surface, all)];
   };
   constexpr double kNear = 0.1;  // of the length: the other end and the sides lie further away
   const double own = (nearest(source) - solid.root).norm();

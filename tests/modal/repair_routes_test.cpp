@@ -4,8 +4,8 @@
 #include "mesher/base/error.h"
 #include "mesher/geometry/weld.h"
 #include "mesher/solids/sections/beam_shape.h"
-#include "mesher/solids/solidify/attachment.h"
 #include "mesher/solids/solidify/solid_domain.h"
+#include "mesher/solids/solidify/support.h"
 #include "modal/domains/beam_mode.h"
 #include "modal/domains/domain_modes.h"
 #include "tests/support/closed_forms.h"
@@ -132,7 +132,7 @@ TEST(RepairRoutes, TheBeamOfABranchIsWithinThreePercentOfItsSolid) {
     // The beam of a good solid that failed later, and that of its bare triangles.
     const double sections =
         beam_modes(carried_to_ends(solid.centreline), solid.volume, {}, {}).frequencies[0];
-    const auto bare = beam_shape(plant.domains[0], Attachment(plant, DomainId(0)));
+    const auto bare = beam_shape(plant.domains[0], Support(plant, DomainId(0)));
     ASSERT_TRUE(bare);
     const double triangles = beam_modes(bare->centreline, 0, {}, {}).frequencies[0];
     std::printf("  beam of sections %+.2f %%, of triangles %+.2f %%\n", 100 * (sections / truth - 1),

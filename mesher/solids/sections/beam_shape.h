@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "mesher/plant/segmented_plant.h"
-#include "mesher/solids/solidify/attachment.h"
 #include "mesher/solids/solidify/solid_domain.h"
+#include "mesher/solids/solidify/support.h"
 
 namespace liana {
 
@@ -15,7 +15,7 @@ namespace liana {
 /// area's squared radius of gyration. A slice that is flat counts as a sheet of the domain's thickness.
 /// Nothing if the surface has no length or no width, a branch no thickness, or a
 /// slice several strands (a ring).
-std::optional<SolidDomain> beam_shape(const Domain& domain, const Attachment& attachment);
+std::optional<SolidDomain> beam_shape(const Domain& domain, const Support& support);
 
 /// The tube through elliptic sections, eight sides, closed, outward; the root lid's triangles come last.
 Mesh tube_through(const std::vector<Section>& sections);

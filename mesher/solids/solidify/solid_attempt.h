@@ -1,8 +1,8 @@
 // One try at making a surface solid: the rungs of the ladder call it with better and better surfaces.
 #pragma once
 
-#include "mesher/solids/solidify/attachment.h"
 #include "mesher/solids/solidify/solid_domain.h"
+#include "mesher/solids/solidify/support.h"
 
 namespace liana {
 
@@ -15,7 +15,7 @@ struct Attempt {
 };
 
 /// clean_shell, then lids or a sheet's thickness, root, rings, centreline. Throws Error{Input}.
-SolidDomain attempt_solid(const Domain& domain, const Mesh& surface, const Attachment& attachment,
+SolidDomain attempt_solid(const Domain& domain, const Mesh& surface, const Support& support,
                           Attempt& attempt);
 
 }  // namespace liana

@@ -1,4 +1,4 @@
-// How near a point is to what a domain grows from.
+// What a domain stands on, and how near a point is to it.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +9,10 @@
 
 namespace liana {
 
-/// What a domain is attached to: its parent's surface, or the ground for a trunk.
-class Attachment {
+/// What a domain stands on: its parent's surface, or the ground for a trunk.
+class Support {
  public:
-  Attachment(const SegmentedPlant& plant, DomainId domain);
+  Support(const SegmentedPlant& plant, DomainId domain);
 
   /// m: distance to the parent's surface, negative inside the parent; the height for a trunk.
   double depth(const Vec3& point) const;

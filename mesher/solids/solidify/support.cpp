@@ -1,10 +1,10 @@
-#include "mesher/solids/solidify/attachment.h"
+#include "mesher/solids/solidify/support.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace liana {
-Attachment::Attachment(const SegmentedPlant& plant, DomainId domain) {
+Support::Support(const SegmentedPlant& plant, DomainId domain) {
   const DomainId parent = plant.domains[domain.index()].parent;
   if (!parent.valid()) return;
   parent_ = &plant.domains[parent.index()].surface;
@@ -12,22 +12,22 @@ Attachment::Attachment(const SegmentedPlant& plant, DomainId domain) {
   tree_ = TriangleTree(*parent_);
 }
 
-double Attachment::distance(const Vec3& point, double best) const {
+double Support::distance(const Vec3& point, double best) const {
   return tree_.nearest(point, best).distance;
 }
 
-bool Attachment::inside(const Vec3& point) const {
+bool Support::inside(const Vec3& point) const {
   if (!box_.contains(point)) return false;
   return std::abs(tree_.winding_number(point)) > 0.5;  // parents may be open tubes and wound either way
 }
 
-double Attachment::depth(const Vec3& point) const {
+double Support::depth(const Vec3& point) const {
   if (!parent_) return point.y();
   const double away = distance(point, std::numeric_limits<double>::infinity());
   return inside(point) ? -away : away;
 }
 
-uint32_t Attachment::nearest(const Mesh& mesh, const std::vector<uint32_t>& candidates) const {
+uint32_t Support::nearest(const Mesh& mesh, const std::vector<uint32_t>& candidates) const {
   uint32_t best = candidates.front();
   double least = std::numeric_limits<double>::infinity();
   for (const uint32_t v : candidates) {
