@@ -9,6 +9,9 @@
 #include <cmath>
 #include <limits>
 
+#include "mesher/geometry/box_tree.h"
+#include "mesher/geometry/fans.h"
+
 namespace liana {
 namespace {
 
@@ -45,61 +48,12 @@ class Intersections {
  public:
   explicit Intersections(const Mesh& mesh) : mesh_(mesh) {}
 
-  bool any() {
-    const size_t count = mesh_.triangles.size();
-    std::vector<Eigen::AlignedBox3d> boxes(count);
-    Eigen::AlignedBox3d all;
-    for (size_t i = 0; i < count; ++i) {
-      for (const uint32_t v : mesh_.triangles[i]) boxes[i].extend(mesh_.positions[v]);
-      all.extend(boxes[i]);
-    }
-    std::vector<uint32_t> items(count);
-    for (uint32_t i = 0; i < count; ++i) items[i] = i;
-    boxes_ = std::move(boxes);
-    return within(items, 0);
+  bool any() const {
+    const BoxTree tree(triangle_boxes(mesh_), 8);
+    return tree.any_pair([this](uint32_t a, uint32_t b) { return meet(a, b); });
   }
 
  private:
-  /// Pairs among the items whose boxes meet: the half space is halved until few are left; what crosses the
-  /// middle goes both ways, and a pair counts in the half that holds the lower corner of its common box.
-  bool within(std::vector<uint32_t>& items, int depth) {
-    constexpr size_t kFew = 64;
-    if (items.size() > kFew && depth < 60) {
-      Eigen::AlignedBox3d box;
-      for (const uint32_t i : items) box.extend(boxes_[i].center());
-      int axis;
-      const double extent = box.sizes().maxCoeff(&axis);
-      std::vector<double> centres;
-      centres.reserve(items.size());
-      for (const uint32_t i : items) centres.push_back(boxes_[i].center()[axis]);
-      std::nth_element(centres.begin(), centres.begin() + static_cast<ptrdiff_t>(centres.size() / 2),
-                       centres.end());
-      const double middle = centres[centres.size() / 2];
-      std::vector<uint32_t> low, high;
-      for (const uint32_t i : items) {
-        if (boxes_[i].min()[axis] < middle) low.push_back(i);
-        if (boxes_[i].max()[axis] >= middle) high.push_back(i);
-      }
-      if (extent > 0 && 4 * (low.size() + high.size()) < 5 * items.size()) {
-        std::vector<uint32_t>().swap(items);
-        return within(low, depth + 1) || within(high, depth + 1);
-      }
-    }
-    // A sweep along the longest axis of what is left.
-    Eigen::AlignedBox3d box;
-    for (const uint32_t i : items) box.extend(boxes_[i]);
-    int axis;
-    box.sizes().maxCoeff(&axis);
-    std::sort(items.begin(), items.end(),
-              [&](uint32_t a, uint32_t b) { return boxes_[a].min()[axis] < boxes_[b].min()[axis]; });
-    for (size_t i = 0; i < items.size(); ++i)
-      for (size_t j = i + 1; j < items.size(); ++j) {
-        if (boxes_[items[j]].min()[axis] > boxes_[items[i]].max()[axis]) break;
-        if (boxes_[items[i]].intersects(boxes_[items[j]]) && meet(items[i], items[j])) return true;
-      }
-    return false;
-  }
-
   /// Whether two triangles have more in common than the vertices they share.
   bool meet(uint32_t first, uint32_t second) const {
     Triangle s = mesh_.triangles[first], t = mesh_.triangles[second];
@@ -161,7 +115,6 @@ class Intersections {
   }
 
   const Mesh& mesh_;
-  std::vector<Eigen::AlignedBox3d> boxes_;
 };
 
 bool has_flat_triangle(const Mesh& mesh) {
@@ -171,50 +124,6 @@ bool has_flat_triangle(const Mesh& mesh) {
     if (CGAL::collinear(exact(a), exact(b), exact(c))) return true;
   }
   return false;
-}
-
-/// Every directed edge once, and the triangles around a vertex one fan (or, on the border, one open fan).
-bool is_oriented_manifold(const Mesh& mesh) {
-  struct Corner {
-    uint32_t vertex, next, before;  // the triangle's other corners
-  };
-  std::vector<uint32_t> first(mesh.positions.size() + 1, 0);
-  for (const Triangle& t : mesh.triangles) {
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return false;
-    for (const uint32_t v : t) ++first[v + 1];
-  }
-  for (size_t v = 0; v + 1 < first.size(); ++v) first[v + 1] += first[v];
-  std::vector<std::array<uint32_t, 2>> fan(3 * mesh.triangles.size());  // (next, before) around each vertex
-  std::vector<uint32_t> free(first.begin(), first.end() - 1);
-  for (const Triangle& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k) fan[free[t[k]]++] = {t[(k + 1) % 3], t[(k + 2) % 3]};
-  for (size_t v = 0; v + 1 < first.size(); ++v) {
-    const auto begin = fan.begin() + first[v], end = fan.begin() + first[v + 1];
-    if (begin == end) continue;
-    // Triangle (v, next, before) is followed by the one whose next is its before.
-    std::sort(begin, end);
-    for (auto i = begin; i + 1 < end; ++i)
-      if ((*i)[0] == (*(i + 1))[0]) return false;
-    const auto follow = [&](uint32_t next) {
-      const auto found = std::lower_bound(begin, end, std::array<uint32_t, 2>{next, 0});
-      return found != end && (*found)[0] == next ? found : end;
-    };
-    auto start = begin;  // of an open fan: the one that follows none
-    size_t openings = 0;
-    for (auto i = begin; i < end; ++i) {
-      const bool follows =
-          std::any_of(begin, end, [&](const std::array<uint32_t, 2>& other) { return other[1] == (*i)[0]; });
-      if (!follows) start = i, ++openings;
-    }
-    if (openings > 1) return false;
-    ptrdiff_t count = 0;
-    for (auto i = start; i != end && count <= end - begin; i = follow((*i)[1])) {
-      ++count;
-      if ((*i)[1] == (*start)[0]) break;
-    }
-    if (count != end - begin) return false;
-  }
-  return true;
 }
 
 }  // namespace

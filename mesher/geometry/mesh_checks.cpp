@@ -1,14 +1,19 @@
 #include "mesher/geometry/mesh_checks.h"
 
 #include <algorithm>
+#include <numeric>
+
+#include "mesher/geometry/disjoint_sets.h"
+#include "mesher/geometry/edge_key.h"
+#include "mesher/geometry/half_edge.h"
 
 namespace liana {
 namespace {
 
 struct Side {
-  uint32_t low, high;  // the edge's vertices
+  uint64_t key;  // of the edge
   uint32_t triangle, edge;
-  bool forward;  // runs from low to high
+  bool forward;  // runs from the smaller number to the larger
 };
 
 }  // namespace
@@ -19,18 +24,22 @@ Adjacency find_adjacency(const Mesh& mesh) {
   for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (uint32_t k = 0; k < 3; ++k) {
       const uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-      sides.push_back({std::min(a, b), std::max(a, b), t, k, a < b});
+      sides.push_back({edge_key(a, b), t, k, a < b});
     }
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+    return std::tie(a.key, a.triangle) < std::tie(b.key, b.triangle);
   });
   Adjacency result;
   result.across.assign(mesh.triangles.size(), {Adjacency::kNone, Adjacency::kNone, Adjacency::kNone});
   for (size_t i = 0; i < sides.size();) {
     size_t end = i + 1;
-    while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
+    while (end < sides.size() && sides[end].key == sides[i].key) ++end;
     if (end - i == 1) result.closed = false;
-    if (end - i > 2) result.manifold = false;
+    if (end - i > 2) {
+      result.manifold = false;
+      result.crowded.resize(mesh.triangles.size(), {0, 0, 0});
+      for (size_t s = i; s < end; ++s) result.crowded[sides[s].triangle][sides[s].edge] = 1;
+    }
     if (end - i == 2) {
       const Side &a = sides[i], &b = sides[i + 1];
       result.across[a.triangle][a.edge] = b.triangle;
@@ -43,54 +52,33 @@ Adjacency find_adjacency(const Mesh& mesh) {
 }
 
 std::vector<std::vector<uint32_t>> border_loops(const Mesh& mesh, const Adjacency& adjacency) {
-  const auto edge_from = [&](uint32_t triangle, uint32_t vertex) -> uint32_t {
-    const Triangle& t = mesh.triangles[triangle];
-    return t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2;
-  };
-  std::vector<std::array<uint8_t, 3>> visited(mesh.triangles.size(), {0, 0, 0});
-  std::vector<std::vector<uint32_t>> loops;
-  for (uint32_t start = 0; start < mesh.triangles.size(); ++start)
-    for (uint32_t k = 0; k < 3; ++k) {
-      if (adjacency.across[start][k] != Adjacency::kNone || visited[start][k]) continue;
-      std::vector<uint32_t> loop;
-      uint32_t triangle = start, edge = k;
-      while (!visited[triangle][edge]) {
-        visited[triangle][edge] = 1;
-        loop.push_back(mesh.triangles[triangle][edge]);
-        // Turn around the edge's end, through the triangles there, to the border edge that leaves it.
-        const uint32_t pivot = mesh.triangles[triangle][(edge + 1) % 3];
-        edge = (edge + 1) % 3;
-        size_t turns = 0;
-        while (adjacency.across[triangle][edge] != Adjacency::kNone && turns++ < mesh.triangles.size()) {
-          triangle = adjacency.across[triangle][edge];
-          edge = edge_from(triangle, pivot);
-        }
-        if (adjacency.across[triangle][edge] != Adjacency::kNone) break;  // round in circles: wound both ways
-      }
-      loops.push_back(std::move(loop));
-    }
-  return loops;
+  if (adjacency.closed && adjacency.manifold && adjacency.oriented) return {};
+  return HalfEdgeMesh(mesh, adjacency).border_loops();
 }
 
 std::vector<uint32_t> connected_parts(const Adjacency& adjacency, uint32_t* count) {
-  std::vector<uint32_t> part(adjacency.across.size(), Adjacency::kNone), stack;
-  *count = 0;
-  for (uint32_t start = 0; start < part.size(); ++start) {
-    if (part[start] != Adjacency::kNone) continue;
-    part[start] = *count;
-    stack.push_back(start);
-    while (!stack.empty()) {
-      const uint32_t triangle = stack.back();
-      stack.pop_back();
-      for (const uint32_t next : adjacency.across[triangle])
-        if (next != Adjacency::kNone && part[next] == Adjacency::kNone) {
-          part[next] = *count;
-          stack.push_back(next);
-        }
-    }
-    ++*count;
-  }
-  return part;
+  DisjointSets parts(adjacency.across.size());
+  for (uint32_t triangle = 0; triangle < adjacency.across.size(); ++triangle)
+    for (const uint32_t next : adjacency.across[triangle])
+      if (next != Adjacency::kNone) parts.unite(triangle, next);
+  return parts.numbered(count);
+}
+
+std::vector<Eigen::AlignedBox3d> triangle_boxes(const Mesh& mesh) {
+  std::vector<Eigen::AlignedBox3d> boxes(mesh.triangles.size());
+  for (size_t i = 0; i < boxes.size(); ++i)
+    for (const uint32_t v : mesh.triangles[i]) boxes[i].extend(mesh.positions[v]);
+  return boxes;
+}
+
+VertexTriangles::VertexTriangles(const Mesh& mesh)
+    : first_(mesh.positions.size() + 1, 0), around_(3 * mesh.triangles.size()) {
+  for (const Triangle& t : mesh.triangles)
+    for (const uint32_t v : t) ++first_[v + 1];
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
+  for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
+    for (const uint32_t v : mesh.triangles[i]) around_[next[v]++] = i;
 }
 
 Vec3 area_vector(const Mesh& mesh, const Triangle& t) {

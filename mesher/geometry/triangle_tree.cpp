@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "mesher/geometry/mesh_checks.h"
 
@@ -35,70 +34,51 @@ Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
 
 }  // namespace
 
-TriangleTree::TriangleTree(const Mesh& mesh) : mesh_(&mesh), items_(mesh.triangles.size()) {
-  if (items_.empty()) return;
-  std::iota(items_.begin(), items_.end(), 0u);
-  for (const Triangle& t : mesh.triangles)
-    centres_.push_back((mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) / 3);
-  nodes_.push_back({.box = {}, .begin = 0, .end = static_cast<uint32_t>(items_.size())});
-  for (uint32_t n = 0; n < nodes_.size(); ++n) build(n);
+TriangleTree::TriangleTree(const Mesh& mesh) : mesh_(&mesh), tree_(triangle_boxes(mesh), kLeaf) {
+  dipoles_.reserve(tree_.nodes().size());
+  for (const BoxTree::Node& node : tree_.nodes()) dipoles_.push_back(dipole(node));
 }
 
-void TriangleTree::build(uint32_t n) {
-  Node node = nodes_[n];
-  Eigen::AlignedBox3d middles;
+TriangleTree::Dipole TriangleTree::dipole(const BoxTree::Node& node) const {
+  Dipole result;
   double weight = 0;
-  node.centre = node.area_vector = Vec3::Zero();
-  for (uint32_t i = node.begin; i < node.end; ++i) {
-    const Triangle& t = mesh_->triangles[items_[i]];
-    for (const uint32_t v : t) node.box.extend(mesh_->positions[v]);
-    middles.extend(centres_[items_[i]]);
-    const Vec3 vector = liana::area_vector(*mesh_, t);
-    node.area_vector += vector;
-    node.centre += vector.norm() * centres_[items_[i]];
+  for (const uint32_t i : tree_.items(node)) {
+    const Triangle& t = mesh_->triangles[i];
+    const Vec3 vector = area_vector(*mesh_, t);
+    result.area_vector += vector;
+    result.centre +=
+        vector.norm() / 3 * (mesh_->positions[t[0]] + mesh_->positions[t[1]] + mesh_->positions[t[2]]);
     weight += vector.norm();
   }
-  node.centre = weight > 0 ? Vec3(node.centre / weight) : node.box.center();
-  node.radius = 0;
-  for (int corner = 0; corner < 8; ++corner)
-    node.radius = std::max(
-        node.radius,
-        (node.box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)) - node.centre).norm());
-  if (node.end - node.begin > kLeaf) {
-    int axis;
-    middles.sizes().maxCoeff(&axis);
-    const uint32_t middle = (node.begin + node.end) / 2;
-    std::nth_element(items_.begin() + node.begin, items_.begin() + middle, items_.begin() + node.end,
-                     [&](uint32_t a, uint32_t b) { return centres_[a][axis] < centres_[b][axis]; });
-    node.children = static_cast<uint32_t>(nodes_.size());
-    nodes_[n] = node;
-    nodes_.push_back({.box = {}, .begin = node.begin, .end = middle});
-    nodes_.push_back({.box = {}, .begin = middle, .end = node.end});
-    return;
+  result.centre = weight > 0 ? Vec3(result.centre / weight) : node.box.center();
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto type = static_cast<Eigen::AlignedBox3d::CornerType>(corner);
+    result.radius = std::max(result.radius, (node.box.corner(type) - result.centre).norm());
   }
-  nodes_[n] = node;
+  return result;
 }
 
 TriangleTree::Hit TriangleTree::nearest(const Vec3& point, double within) const {
   Hit hit{.distance = within};
-  if (nodes_.empty()) return hit;
+  const std::vector<BoxTree::Node>& nodes = tree_.nodes();
+  if (nodes.empty()) return hit;
   const auto visit = [&](const auto& self, uint32_t n) -> void {
-    const Node& node = nodes_[n];
+    const BoxTree::Node& node = nodes[n];
     if (node.box.squaredExteriorDistance(point) >= hit.distance * hit.distance) return;
     if (node.children) {
       const uint32_t a = node.children, b = a + 1;
       const bool a_first =
-          nodes_[a].box.squaredExteriorDistance(point) <= nodes_[b].box.squaredExteriorDistance(point);
+          nodes[a].box.squaredExteriorDistance(point) <= nodes[b].box.squaredExteriorDistance(point);
       self(self, a_first ? a : b);
       self(self, a_first ? b : a);
       return;
     }
-    for (uint32_t i = node.begin; i < node.end; ++i) {
-      const Triangle& t = mesh_->triangles[items_[i]];
+    for (const uint32_t i : tree_.items(node)) {
+      const Triangle& t = mesh_->triangles[i];
       const Vec3 on =
           nearest_on_triangle(point, mesh_->positions[t[0]], mesh_->positions[t[1]], mesh_->positions[t[2]]);
       const double distance = (on - point).norm();
-      if (distance < hit.distance) hit = {on, distance, items_[i]};
+      if (distance < hit.distance) hit = {on, distance, i};
     }
   };
   visit(visit, 0);
@@ -106,23 +86,24 @@ TriangleTree::Hit TriangleTree::nearest(const Vec3& point, double within) const 
 }
 
 double TriangleTree::winding_number(const Vec3& point) const {
-  if (nodes_.empty()) return 0;
+  if (dipoles_.empty()) return 0;
   double angle = 0;
   const auto visit = [&](const auto& self, uint32_t n) -> void {
-    const Node& node = nodes_[n];
-    const Vec3 away = node.centre - point;
+    const BoxTree::Node& node = tree_.nodes()[n];
+    const Dipole& dipole = dipoles_[n];
+    const Vec3 away = dipole.centre - point;
     const double distance = away.norm();
-    if (node.children && distance <= kFar * node.radius) {
+    if (node.children && distance <= kFar * dipole.radius) {
       self(self, node.children);
       self(self, node.children + 1);
       return;
     }
-    if (distance > kFar * node.radius) {
-      angle += away.dot(node.area_vector) / (distance * distance * distance);
+    if (distance > kFar * dipole.radius) {
+      angle += away.dot(dipole.area_vector) / (distance * distance * distance);
       return;
     }
-    for (uint32_t i = node.begin; i < node.end; ++i) {
-      const Triangle& t = mesh_->triangles[items_[i]];
+    for (const uint32_t i : tree_.items(node)) {
+      const Triangle& t = mesh_->triangles[i];
       const Vec3 a = mesh_->positions[t[0]] - point, b = mesh_->positions[t[1]] - point,
                  c = mesh_->positions[t[2]] - point;
       const double la = a.norm(), lb = b.norm(), lc = c.norm();

@@ -3,11 +3,12 @@
 
 #include <vector>
 
+#include "mesher/geometry/box_tree.h"
 #include "mesher/geometry/mesh.h"
 
 namespace liana {
 
-/// A tree of boxes over the triangles of a mesh, which must outlive it. Built in n log n.
+/// A box tree over the triangles of a mesh, which must outlive it.
 class TriangleTree {
  public:
   TriangleTree() = default;
@@ -25,19 +26,16 @@ class TriangleTree {
   double winding_number(const Vec3& point) const;
 
  private:
-  struct Node {
-    Eigen::AlignedBox3d box;
-    uint32_t begin = 0, end = 0;  // of items_
-    uint32_t children = 0;        // index of the first, the second follows; 0 for a leaf
-    Vec3 centre = Vec3::Zero(), area_vector = Vec3::Zero();  // the dipole
-    double radius = 0;
+  /// A node's triangles from far away.
+  struct Dipole {
+    Vec3 centre = Vec3::Zero(), area_vector = Vec3::Zero();
+    double radius = 0;  // of the node's box around the centre
   };
-  void build(uint32_t node);
+  Dipole dipole(const BoxTree::Node& node) const;
 
   const Mesh* mesh_ = nullptr;
-  std::vector<uint32_t> items_;
-  std::vector<Vec3> centres_;
-  std::vector<Node> nodes_;
+  BoxTree tree_;
+  std::vector<Dipole> dipoles_;  // per node
 };
 
 }  // namespace liana

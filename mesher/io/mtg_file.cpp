@@ -28,7 +28,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   std::vector<std::string_view> cells;
   while (cells.size() < kMaxColumns) {
     const size_t end = line.find('\t');
-    cells.push_back(trimmed(line.substr(0, end)));
+    cells.push_back(without_outer_blanks(line.substr(0, end)));
     if (end == std::string_view::npos) break;
     line.remove_prefix(end + 1);
   }
@@ -42,7 +42,7 @@ class MtgParser {
   PlantGraph parse() {
     std::string_view line;
     while (lines_.next(line)) {
-      const std::string_view text = trimmed(line);
+      const std::string_view text = without_outer_blanks(line);
       if (text.empty() || text[0] == '#') continue;
       if (begins_section(text)) continue;
       if (section_ == "CLASSES") declare_class(text);
@@ -68,7 +68,7 @@ class MtgParser {
   bool begins_section(std::string_view text) {
     for (const std::string_view name : {"CODE", "CLASSES", "DESCRIPTION", "FEATURES", "MTG"}) {
       if (!text.starts_with(name)) continue;
-      const std::string_view rest = trimmed(text.substr(name.size()));
+      const std::string_view rest = without_outer_blanks(text.substr(name.size()));
       if (!rest.starts_with(":")) continue;
       section_ = name;
       return true;
@@ -230,7 +230,7 @@ class MtgParser {
                                          without_position_, entities_.size()));
     if (skipped_ranges_)
       graph_.notes.push_back(fmt::format("{} ranges (<< or ++) taken as one entity each", skipped_ranges_));
-    if (diameter_column_ == 0) graph_.notes.push_back("the file has no column TopDia");
+    if (diameter_column_ == 0) graph_.notes.emplace_back("the file has no column TopDia");
   }
 
   struct Column {

@@ -49,10 +49,10 @@ class ObjParser {
     } else if (keyword == "f" || keyword == "fo") {
       face(line);
     } else if (keyword == "o" || keyword == "g") {
-      (keyword == "o" ? object_ : group_) = trimmed(line);
+      (keyword == "o" ? object_ : group_) = without_outer_blanks(line);
       label_known_ = false;
     } else if (keyword == "usemtl") {
-      material_ = trimmed(line);
+      material_ = without_outer_blanks(line);
       label_known_ = false;
     } else if (keyword == "l" || keyword == "p") {
       ++lines_and_points_;

@@ -61,7 +61,7 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& file) {
   };
   PlyHeader header;
   std::string_view line;
-  if (!lines.next(line) || trimmed(line) != "ply") throw error("does not start with 'ply'");
+  if (!lines.next(line) || without_outer_blanks(line) != "ply") throw error("does not start with 'ply'");
   bool has_format = false;
   while (lines.number() < kMaxHeaderLines && lines.next(line)) {
     const std::string_view keyword = take_word(line);

@@ -37,7 +37,7 @@ Format format_of(const fs::path& path, std::string_view bytes) {
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r") || extension == ".ply") return Format::Ply;
   if (extension == ".obj") return Format::Obj;
   if (extension == ".mtg") return Format::Mtg;
-  const std::string_view text = trimmed(bytes.substr(0, 4096));
+  const std::string_view text = without_outer_blanks(bytes.substr(0, 4096));
   if (text.starts_with("{") && text.find("\"liana_graph\"") != std::string_view::npos) return Format::Graph;
   if (text.starts_with("{") && bytes.find("\"meshes\"") != std::string_view::npos) return Format::Gltf;
   if (text.starts_with("CODE") && bytes.find("ENTITY-CODE") != std::string_view::npos) return Format::Mtg;

@@ -9,6 +9,7 @@
 
 #include "mesher/base/memory.h"
 #include "mesher/geometry/disjoint_sets.h"
+#include "mesher/geometry/edge_key.h"
 #include "mesher/geometry/mesh_checks.h"
 #include "mesher/geometry/weld.h"
 #include "mesher/io/leaf_names.h"
@@ -26,7 +27,7 @@ struct Side {
 
 Side side_of(const Triangle& t, uint32_t triangle, uint8_t corner) {
   const uint32_t a = t[corner], b = t[(corner + 1) % 3];
-  return {uint64_t{std::min(a, b)} << 32 | std::max(a, b), triangle, corner, a < b};
+  return {edge_key(a, b), triangle, corner, a < b};
 }
 
 template <class Body>

@@ -8,6 +8,7 @@
 #include "mesher/base/error.h"
 #include "mesher/base/hash.h"
 #include "mesher/exact/self_intersection.h"
+#include "mesher/geometry/mesh_checks.h"
 #include "mesher/tets/slivers.h"
 
 namespace liana {
@@ -60,20 +61,16 @@ void check_indices_and_numbers(const Mesh& surface, std::span<const uint8_t> is_
 /// Every directed edge once, and its opposite once: closed, consistently oriented, no edge with 3 or more
 /// faces.
 void check_closed(const Mesh& surface) {
-  std::vector<uint64_t> edges;
-  edges.reserve(3 * surface.triangles.size());
-  for (const Triangle& t : surface.triangles)
-    for (int k = 0; k < 3; ++k) {
-      const uint64_t from = t[k], to = t[(k + 1) % 3];
-      if (from == to) refuse("a triangle uses a vertex twice");
-      edges.push_back(from << 32 | to);
-    }
-  std::sort(edges.begin(), edges.end());
-  if (std::adjacent_find(edges.begin(), edges.end()) != edges.end())
+  for (const auto& [a, b, c] : surface.triangles)
+    if (a == b || b == c || c == a) refuse("a triangle uses a vertex twice");
+  const Adjacency adjacency = find_adjacency(surface);
+  if (!adjacency.manifold || !adjacency.oriented)
     refuse("an edge has more than two triangles, or neighbours of opposite orientation");
-  for (const uint64_t e : edges)
-    if (!std::binary_search(edges.begin(), edges.end(), e << 32 | e >> 32)) {
-      const Vec3 place = (surface.positions[e >> 32] + surface.positions[e & 0xffffffff]) / 2;
+  for (size_t i = 0; i < surface.triangles.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      if (adjacency.across[i][k] != Adjacency::kNone) continue;
+      const Triangle& t = surface.triangles[i];
+      const Vec3 place = (surface.positions[t[k]] + surface.positions[t[(k + 1) % 3]]) / 2;
       refuse(fmt::format("it is open at ({:.4g}, {:.4g}, {:.4g})", place.x(), place.y(), place.z()));
     }
 }

@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <numeric>
-#include <unordered_map>
 
 #include "mesher/base/error.h"
-#include "mesher/geometry/mesh_checks.h"
+#include "mesher/geometry/half_edge.h"
 #include "mesher/geometry/weld.h"
 #include "mesher/solids/repair/enclosed_volume.h"
 
@@ -61,52 +60,36 @@ int flat_edge(const Mesh& mesh, const Triangle& t) {
   return 2 * area_vector(mesh, t).norm() <= 1e-9 * edge[longest] * edge[longest] ? longest : -1;
 }
 
-/// A triangle whose corner c lies on its edge ab is removed by giving c to the neighbour across ab: (b, a, d)
-/// becomes (c, a, d), and the flat one (b, c, d). On a border it is dropped. Returns how many went.
+/// A triangle whose corner c lies on its edge ab is turned: c goes to the neighbour across ab, (b, a, d),
+/// which becomes (d, b, c), and the flat one (a, d, c). On a border it is dropped. Returns how many went.
 size_t remove_flat_triangles(Mesh& mesh) {
   std::vector<uint32_t> flat;
   for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
     if (flat_edge(mesh, mesh.triangles[i]) >= 0) flat.push_back(i);
   if (flat.empty()) return 0;
 
-  std::unordered_map<uint64_t, uint32_t> triangle_at;  // by directed edge
-  const auto key = [](uint32_t from, uint32_t to) { return uint64_t{from} << 32 | to; };
-  const auto enter = [&](uint32_t i) {
-    for (int k = 0; k < 3; ++k) triangle_at[key(mesh.triangles[i][k], mesh.triangles[i][(k + 1) % 3])] = i;
-  };
-  for (uint32_t i = 0; i < mesh.triangles.size(); ++i) enter(i);
+  HalfEdgeMesh edges(mesh);
   std::vector<uint8_t> dropped(mesh.triangles.size(), 0);
   size_t removed = 0;
   // A flip can leave another flat one (d on the line too); the bound ends what would go in circles.
   for (size_t steps = 0; !flat.empty() && steps < 4 * mesh.triangles.size(); ++steps) {
     const uint32_t i = flat.back();
     flat.pop_back();
-    const int longest = dropped[i] ? -1 : flat_edge(mesh, mesh.triangles[i]);
+    const int longest = dropped[i] ? -1 : flat_edge(mesh, edges.corners(i));
     if (longest < 0) continue;
-    const Triangle t = mesh.triangles[i];
-    const uint32_t a = t[longest], b = t[(longest + 1) % 3], c = t[(longest + 2) % 3];
-    const auto neighbour = triangle_at.find(key(b, a));
-    ++removed;
-    if (neighbour == triangle_at.end() || dropped[neighbour->second]) {
-      dropped[i] = 1;
-      continue;
-    }
-    const uint32_t j = neighbour->second;
-    const Triangle n = mesh.triangles[j];
-    const uint32_t d = n[0] != a && n[0] != b ? n[0] : n[1] != a && n[1] != b ? n[1] : n[2];
-    triangle_at.erase(key(a, b));
-    triangle_at.erase(key(b, a));
-    mesh.triangles[j] = {c, a, d};
-    mesh.triangles[i] = {b, c, d};
-    for (const uint32_t k : {i, j}) {
-      enter(k);
-      if (flat_edge(mesh, mesh.triangles[k]) >= 0) flat.push_back(k);
+    const HalfEdge edge = edges.half_edge(i, longest);
+    const uint32_t j = edges.triangle(edges.opposite(edge));
+    if (j == HalfEdgeMesh::kNone || dropped[j]) {
+      dropped[i] = 1, ++removed;
+    } else if (edges.flip(edge)) {
+      ++removed;
+      for (const uint32_t k : {i, j})
+        if (flat_edge(mesh, edges.corners(k)) >= 0) flat.push_back(k);
     }
   }
-  size_t kept = 0;
-  for (size_t i = 0; i < dropped.size(); ++i)
-    if (!dropped[i]) mesh.triangles[kept++] = mesh.triangles[i];
-  mesh.triangles.resize(kept);
+  mesh.triangles.clear();
+  for (uint32_t i = 0; i < dropped.size(); ++i)
+    if (!dropped[i]) mesh.triangles.push_back(edges.corners(i));
   return removed;
 }
 

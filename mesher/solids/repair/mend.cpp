@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
-#include <unordered_map>
 
-#include "mesher/geometry/mesh_checks.h"
+#include "mesher/geometry/fans.h"
 #include "mesher/geometry/weld.h"
 #include "mesher/solids/repair/enclosed_volume.h"
 
@@ -39,35 +37,32 @@ size_t close_slits(Mesh& mesh) {
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   if (border.size() > kMostBorder) return 0;
 
-  std::map<uint32_t, std::vector<std::pair<double, uint32_t>>> on_edge;  // triangle -> (place, vertex)
-  std::map<uint32_t, uint32_t> edge_of;
-  for (const BorderEdge& e : border) {
-    if (edge_of.count(e.triangle)) continue;  // one edge a triangle and pass
-    const Triangle& t = mesh.triangles[e.triangle];
-    const uint32_t a = t[e.edge], b = t[(e.edge + 1) % 3];
-    const Vec3 along = mesh.positions[b] - mesh.positions[a];
+  size_t split = 0;
+  uint32_t last = Id<Mesh>::kNone;  // triangle that was split: one edge a triangle and pass
+  for (const auto& [triangle, k] : border) {
+    if (triangle == last) continue;
+    const Triangle t = mesh.triangles[triangle];
+    const uint32_t end = t[(k + 1) % 3], opposite = t[(k + 2) % 3];
+    const Vec3 along = mesh.positions[end] - mesh.positions[t[k]];
     const double length = along.norm();
+    std::vector<std::pair<double, uint32_t>> on_edge;  // place, vertex
     for (const uint32_t v : vertices) {
       if (v == t[0] || v == t[1] || v == t[2]) continue;
-      const Vec3 from = mesh.positions[v] - mesh.positions[a];
+      const Vec3 from = mesh.positions[v] - mesh.positions[t[k]];
       const double place = from.dot(along) / (length * length);
       if (place < kSlit || place > 1 - kSlit || (from - place * along).norm() > kSlit * length) continue;
-      on_edge[e.triangle].push_back({place, v});
-      edge_of[e.triangle] = e.edge;
+      on_edge.push_back({place, v});
     }
-  }
-  size_t split = 0;
-  for (auto& [triangle, list] : on_edge) {
-    std::sort(list.begin(), list.end());
-    const Triangle t = mesh.triangles[triangle];
-    const uint32_t k = edge_of[triangle], opposite = t[(k + 2) % 3];
+    if (on_edge.empty()) continue;
+    std::sort(on_edge.begin(), on_edge.end());
     uint32_t from = t[k];
-    for (const auto& [place, v] : list) {
+    for (const auto& [place, v] : on_edge) {
       mesh.triangles.push_back({from, v, opposite});
       from = v;
-      ++split;
     }
-    mesh.triangles[triangle] = {from, t[(k + 1) % 3], opposite};
+    mesh.triangles[triangle] = {from, end, opposite};
+    split += on_edge.size();
+    last = triangle;
   }
   return split;
 }
@@ -78,10 +73,6 @@ size_t close_slits(Mesh& mesh) {
 bool drop_patch(Mesh& mesh, double& volume) {
   const Adjacency adjacency = find_adjacency(mesh);
   if (adjacency.manifold) return false;
-  std::unordered_map<uint64_t, int> uses;
-  const auto key = [](uint32_t a, uint32_t b) { return uint64_t{std::min(a, b)} << 32 | std::max(a, b); };
-  for (const Triangle& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k) ++uses[key(t[k], t[(k + 1) % 3])];
   uint32_t count = 0;
   const std::vector<uint32_t> part = connected_parts(adjacency, &count);
   std::vector<double> area(count, 0), rim(count, 0);
@@ -90,10 +81,10 @@ bool drop_patch(Mesh& mesh, double& volume) {
     const Triangle& t = mesh.triangles[i];
     area[part[i]] += area_vector(mesh, t).norm();
     for (int k = 0; k < 3; ++k) {
-      const int n = uses[key(t[k], t[(k + 1) % 3])];
-      has_border[part[i]] |= n == 1;
-      at_joint[part[i]] |= n > 2;
-      if (n > 2) rim[part[i]] += (mesh.positions[t[k]] - mesh.positions[t[(k + 1) % 3]]).norm();
+      const bool crowded = adjacency.crowded[i][k];
+      has_border[part[i]] |= !crowded && adjacency.across[i][k] == Adjacency::kNone;
+      at_joint[part[i]] |= crowded;
+      if (crowded) rim[part[i]] += (mesh.positions[t[k]] - mesh.positions[t[(k + 1) % 3]]).norm();
     }
   }
   // What stands on its rim like a twig, larger than anything flat within that rim, is no inner wall.
@@ -116,44 +107,16 @@ bool drop_patch(Mesh& mesh, double& volume) {
 
 /// Gives every fan of triangles at a vertex a vertex of its own. Returns how many were added.
 size_t part_pinches(Mesh& mesh) {
-  const Adjacency adjacency = find_adjacency(mesh);
-  // Corners that share an edge at the vertex belong to one fan: union-find over 3 t + k.
-  std::vector<uint32_t> up(3 * mesh.triangles.size());
-  std::iota(up.begin(), up.end(), 0u);
-  const auto top = [&](uint32_t c) {
-    while (up[c] != c) c = up[c] = up[up[c]];
-    return c;
-  };
-  const auto corner = [&](uint32_t t, uint32_t v) {
-    const Triangle& triangle = mesh.triangles[t];
-    return 3 * t + (triangle[0] == v ? 0 : triangle[1] == v ? 1 : 2);
-  };
-  for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    for (uint32_t k = 0; k < 3; ++k) {
-      const uint32_t other = adjacency.across[t][k];
-      if (other == Adjacency::kNone) continue;
-      for (const uint32_t v : {mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]})
-        up[top(corner(other, v))] = top(corner(t, v));
-    }
-  std::vector<uint32_t> fan_of(mesh.positions.size(), Id<Mesh>::kNone);  // the first fan keeps the vertex
-  std::map<uint32_t, uint32_t> copy_of;                                  // fan -> new vertex
-  const std::vector<Triangle> before = mesh.triangles;
-  std::vector<std::pair<uint32_t, uint32_t>> copies;  // old, new
-  for (uint32_t t = 0; t < before.size(); ++t)
-    for (uint32_t k = 0; k < 3; ++k) {
-      const uint32_t v = before[t][k], fan = top(3 * t + k);
-      if (fan_of[v] == Id<Mesh>::kNone) fan_of[v] = fan;
-      if (fan_of[v] == fan) continue;
-      const auto [it, is_new] = copy_of.try_emplace(fan, static_cast<uint32_t>(mesh.positions.size()));
-      if (is_new) {
-        mesh.positions.push_back(mesh.positions[v]);
-        copies.push_back({v, it->second});
-      }
-      mesh.triangles[t][k] = it->second;
-    }
-  if (copies.empty()) return 0;
-  std::vector<uint8_t> moves(mesh.positions.size(), 0);
-  for (const auto& [old, copy] : copies) moves[old] = moves[copy] = 1;
+  Fans fans = separate_fans(mesh, find_adjacency(mesh));
+  const size_t before = mesh.positions.size(), added = fans.vertex.size() - before;
+  if (added == 0) return 0;
+  mesh.triangles = std::move(fans.triangles);
+  std::vector<uint8_t> moves(fans.vertex.size(), 0);
+  for (size_t copy = before; copy < moves.size(); ++copy) {
+    const uint32_t old = fans.vertex[copy];
+    mesh.positions.push_back(mesh.positions[old]);
+    moves[old] = moves[copy] = 1;
+  }
   std::vector<Vec3> sum(mesh.positions.size(), Vec3::Zero());
   std::vector<int> count(mesh.positions.size(), 0);
   for (const Triangle& t : mesh.triangles)
@@ -164,7 +127,7 @@ size_t part_pinches(Mesh& mesh) {
       }
   for (size_t v = 0; v < moves.size(); ++v)
     if (moves[v] && count[v]) mesh.positions[v] += 1e-3 * (sum[v] / count[v] - mesh.positions[v]);
-  return copies.size();
+  return added;
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ double largest_finite(const std::vector<double>& values, uint32_t* at) {
 
 /// Distance along the surface from the root end: the mean of that from the root and that to the tip, whose
 /// level lines lean opposite ways. Negative where the root cannot be reached. The length comes back.
-double distance_along(const Mesh& mesh, const ParentSurface& attachment, std::vector<double>& along) {
+double distance_along(const Mesh& mesh, const ParentSurface& support, std::vector<double>& along) {
   const auto from = [&](uint32_t v) {
     std::vector<uint8_t> source(mesh.positions.size(), 0);
     source[v] = 1;
@@ -31,7 +31,7 @@ double distance_along(const Mesh& mesh, const ParentSurface& attachment, std::ve
   };
   std::vector<uint32_t> all;
   for (const Triangle& t : mesh.triangles) all.insert(all.end(), t.begin(), t.end());
-  uint32_t root = attachment.nearest(mesh, all), tip = root, opposite = root;
+  uint32_t root = support.nearest(mesh, all), tip = root, opposite = root;
   std::vector<double> from_root = from(root);
   const double reach = largest_finite(from_root, &tip);
   const std::vector<double> from_tip = from(tip);
@@ -134,11 +134,11 @@ bool is_one_strand(const std::vector<Slice>& all, const std::vector<int>& used,
 
 }  // namespace
 
-std::optional<SolidDomain> beam_shape(const Domain& domain, const ParentSurface& attachment) {
+std::optional<SolidDomain> beam_shape(const Domain& domain, const ParentSurface& support) {
   const Mesh mesh = weld(domain.surface);
   if (mesh.triangles.empty()) return {};
   std::vector<double> along;
-  const double length = distance_along(mesh, attachment, along), area = surface_area(mesh);
+  const double length = distance_along(mesh, support, along), area = surface_area(mesh);
   if (!(length > 0) || !std::isfinite(length) || !(area > 1e-9 * length * length)) return {};
   const int count = std::clamp(static_cast<int>(std::lround(kPi * length * length / area)), 8, 24);
   const std::vector<Slice> all = slices(mesh, along, length, count);

@@ -15,7 +15,7 @@ namespace liana {
 /// area's squared radius of gyration. A slice that is flat counts as a sheet of the domain's thickness.
 /// Nothing if the surface has no length or no width, a branch no thickness, or a
 /// slice several strands (a ring).
-std::optional<SolidDomain> beam_shape(const Domain& domain, const ParentSurface& attachment);
+std::optional<SolidDomain> beam_shape(const Domain& domain, const ParentSurface& support);
 
 /// The tube through elliptic sections, eight sides, closed, outward; the root lid's triangles come last.
 Mesh tube_through(const std::vector<Section>& sections);

@@ -2,15 +2,13 @@
 
 #include <unordered_map>
 
+#include "mesher/geometry/edge_key.h"
+
 namespace liana {
 namespace {
 
-uint64_t edge_key(uint32_t a, uint32_t b) {
-  return a < b ? uint64_t{a} << 32 | b : uint64_t{b} << 32 | a;
-}
-
 Vec3 crossing(const Mesh& mesh, const std::vector<double>& value, uint64_t key) {
-  const auto a = static_cast<uint32_t>(key >> 32), b = static_cast<uint32_t>(key);
+  const auto [a, b] = edge_ends(key);
   return mesh.positions[a] + value[a] / (value[a] - value[b]) * (mesh.positions[b] - mesh.positions[a]);
 }
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "mesher/base/error.h"
+#include "mesher/geometry/disjoint_sets.h"
 #include "mesher/geometry/weld.h"
 #include "mesher/plant/segmented_plant.h"
 #include "mesher/solids/repair/clean_shell.h"
@@ -25,7 +26,8 @@ constexpr double kStub = 1.0, kLeastRoundness = 0.2;
 /// The joining of superlevel sets, vertex by vertex from the highest down.
 class MergeTree {
  public:
-  explicit MergeTree(const SkinField& field) : field_(field), rank_(field.distance.size()) {
+  explicit MergeTree(const SkinField& field)
+      : field_(field), rank_(field.distance.size()), sets_(rank_.size()) {
     order_.resize(rank_.size());
     std::iota(order_.begin(), order_.end(), 0u);
     // Equal distances are ordered by index, so that no two vertices are equally high.
@@ -33,8 +35,6 @@ class MergeTree {
       return std::tie(field_.distance[a], a) > std::tie(field_.distance[b], b);
     });
     for (uint32_t i = 0; i < order_.size(); ++i) rank_[order_[i]] = i;
-    up_.resize(rank_.size());
-    std::iota(up_.begin(), up_.end(), 0u);
     axis_of_.assign(rank_.size(), -1);
   }
 
@@ -42,7 +42,7 @@ class MergeTree {
     for (const uint32_t v : order_) add(v);
     // The last one standing is the trunk. Saddles fall as the sweep goes on: in reverse, parents come first.
     std::vector<int> sequence;
-    const int trunk = axis_of_[top(order_.back())];
+    const int trunk = axis_of_[sets_.find(order_.back())];
     axes_[trunk].parent = -1;
     sequence.push_back(trunk);
     for (size_t i = joined_.size(); i-- > 0;) sequence.push_back(joined_[i]);
@@ -58,24 +58,19 @@ class MergeTree {
 
  private:
   struct Arm {
-    uint32_t set;        // top of the component
+    uint32_t set;        // the component
     uint32_t neighbour;  // of the saddle, in the component
     double rise;         // m, from the saddle to the tip
     double diameter = 0;
     bool is_branch = false;
   };
 
-  uint32_t top(uint32_t v) {
-    while (up_[v] != v) v = up_[v] = up_[up_[v]];
-    return v;
-  }
-
   void add(uint32_t v) {
     std::vector<Arm> arms;
-    for (uint32_t i = field_.first[v]; i < field_.first[v + 1]; ++i)
-      for (const uint32_t u : field_.mesh.triangles[field_.around[i]]) {
+    for (const uint32_t i : field_.around.of(v))
+      for (const uint32_t u : field_.mesh.triangles[i]) {
         if (rank_[u] >= rank_[v]) continue;
-        const uint32_t set = top(u);
+        const uint32_t set = sets_.find(u);
         if (std::none_of(arms.begin(), arms.end(), [&](const Arm& a) { return a.set == set; }))
           arms.push_back({set, u, field_.distance[axes_[axis_of_[set]].tip] - field_.distance[v]});
       }
@@ -85,8 +80,8 @@ class MergeTree {
       return;
     }
     const int axis = arms.size() == 1 ? axis_of_[arms[0].set] : join(v, arms);
-    for (const Arm& arm : arms) up_[arm.set] = v;
-    axis_of_[v] = axis;
+    for (const Arm& arm : arms) sets_.unite(arm.set, v);
+    axis_of_[sets_.find(v)] = axis;
   }
 
   /// The axis that goes on below the saddle v; the other branches become its children, the rest is bumps.
@@ -165,8 +160,8 @@ class MergeTree {
 
   const SkinField& field_;
   std::vector<uint32_t> order_, rank_;  // highest first
-  std::vector<uint32_t> up_;            // union-find
-  std::vector<int> axis_of_;            // per top of a set
+  DisjointSets sets_;                   // components of what lies above
+  std::vector<int> axis_of_;            // per set
   std::vector<BranchAxis> axes_;
   std::vector<int> joined_;
 };
@@ -213,9 +208,9 @@ bool closed_skin(const Mesh& shell, SkinField& field) {
 }  // namespace
 
 uint32_t SkinField::triangle_at_edge(uint32_t a, uint32_t b) const {
-  for (uint32_t i = first[a]; i < first[a + 1]; ++i) {
-    const Triangle& t = mesh.triangles[around[i]];
-    if (t[0] == b || t[1] == b || t[2] == b) return around[i];
+  for (const uint32_t i : around.of(a)) {
+    const Triangle& t = mesh.triangles[i];
+    if (t[0] == b || t[1] == b || t[2] == b) return i;
   }
   return Adjacency::kNone;
 }
@@ -225,8 +220,8 @@ bool make_skin_field(const Mesh& shell, SkinField& field) {
   const Mesh& mesh = field.mesh;
   SegmentedPlant ground;
   ground.domains.emplace_back();
-  const ParentSurface attachment(ground, DomainId(0));
-  const std::vector<uint8_t> is_root = root_end(mesh, field.adjacency, attachment);
+  const ParentSurface support(ground, DomainId(0));
+  const std::vector<uint8_t> is_root = root_end(mesh, field.adjacency, support);
   std::vector<uint8_t> source(mesh.positions.size(), 0);
   for (size_t i = 0; i < is_root.size(); ++i)
     if (is_root[i])
@@ -234,15 +229,7 @@ bool make_skin_field(const Mesh& shell, SkinField& field) {
   field.distance = geodesic_distance(mesh, source);
   for (double& d : field.distance)
     if (!std::isfinite(d)) d = 0;  // of vertices that no triangle uses
-
-  field.first.assign(mesh.positions.size() + 1, 0);
-  for (const Triangle& t : mesh.triangles)
-    for (const uint32_t v : t) ++field.first[v + 1];
-  for (size_t v = 0; v + 1 < field.first.size(); ++v) field.first[v + 1] += field.first[v];
-  field.around.resize(3 * mesh.triangles.size());
-  std::vector<uint32_t> next(field.first.begin(), field.first.end() - 1);
-  for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
-    for (const uint32_t v : mesh.triangles[i]) field.around[next[v]++] = i;
+  field.around = VertexTriangles(mesh);
   return true;
 }
 
@@ -254,8 +241,8 @@ std::vector<uint32_t> way_down(const SkinField& field, uint32_t from) {
   std::vector<uint32_t> way{from};
   for (uint32_t v = from;;) {
     uint32_t lowest = v;
-    for (uint32_t i = field.first[v]; i < field.first[v + 1]; ++i)
-      for (const uint32_t u : field.mesh.triangles[field.around[i]])
+    for (const uint32_t i : field.around.of(v))
+      for (const uint32_t u : field.mesh.triangles[i])
         if (field.distance[u] < field.distance[lowest]) lowest = u;
     if (lowest == v) return way;
     way.push_back(v = lowest);

@@ -16,8 +16,8 @@ namespace liana {
 struct SkinField {
   Mesh mesh;  ///< closed, oriented, one part
   Adjacency adjacency;
-  std::vector<double> distance;           ///< f, m, per vertex
-  std::vector<uint32_t> first, around;    ///< triangles around v: around[first[v] .. first[v + 1])
+  std::vector<double> distance;  ///< f, m, per vertex
+  VertexTriangles around;
   uint32_t root = 0;                      ///< a vertex on the root end
   double lost_area = 0, lost_volume = 0;  ///< shares that mending has cost
 

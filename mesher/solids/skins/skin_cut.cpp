@@ -4,9 +4,10 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "mesher/geometry/edge_key.h"
+#include "mesher/geometry/split_triangle.h"
 #include "mesher/geometry/weld.h"
-#include "mesher/solids/sections/slice.h"
-#include "mesher/solids/skins/branch_axes.h"
+#include "mesher/solids/skins/cut_finder.h"
 #include "mesher/solids/solidify/cap.h"
 
 namespace liana {
@@ -15,68 +16,12 @@ namespace {
 constexpr double kSnapAlong = 0.15;  // of an edge: a cut this near to a vertex goes through it,
 constexpr double kSnapAcross = 0.1;  // if that is no farther than this part of the branch's diameter
 
-uint64_t edge_key(uint32_t a, uint32_t b) {
-  return a < b ? uint64_t{a} << 32 | b : uint64_t{b} << 32 | a;
-}
-
 /// Where a branch is cut off.
 struct Cut {
   LevelLoop loop;
   double diameter;
   bool snaps = true, dropped = false;
   int below = 0;  // label of what remains below
-};
-
-/// Of the plane cuts across the branch, from its crotch outward, the first that stays on it and on triangles
-/// that no other cut crosses; else a level line of the distance.
-class CutFinder {
- public:
-  explicit CutFinder(const SkinField& field) : field_(field), taken_(field.mesh.triangles.size(), 0) {}
-
-  std::optional<LevelLoop> find(const BranchAxis& axis) {
-    const std::vector<uint32_t> way = way_down(field_, axis.tip);
-    const double f = axis.base, rise = field_.distance[axis.tip] - f, d = axis.diameter;
-    const auto level = [&](double height) {
-      return loop_across(field_, way, f, [&, height](uint32_t u) { return field_.distance[u] - f - height; });
-    };
-    const auto near = level(std::min(0.3 * d, 0.2 * rise)), far = level(std::min(1.3 * d, 0.8 * rise));
-    if (near && far) {
-      const Vec3 from = polygon_moments(polygon_of(*near)).centroid,
-                 to = polygon_moments(polygon_of(*far)).centroid, along = (to - from).normalized();
-      const double crotch = (field_.mesh.positions[axis.crotch] - from).dot(along);
-      for (int step = 1; step <= 24; ++step) {
-        const double place = crotch + 0.05 * step * d;
-        if (place > (to - from).norm()) break;
-        // Around a branch that stands off at right angles f begins below that of the crotch, by its diameter.
-        const double lowest = f - 1.2 * d;
-        const auto loop = loop_across(field_, way, lowest, [&](uint32_t u) {
-          return (field_.mesh.positions[u] - from).dot(along) - place;
-        });
-        if (loop && accept(*loop, lowest, d)) return loop;
-      }
-    }
-    for (const double height : {0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0}) {
-      const auto loop = level(std::min(height * d, 0.8 * height * rise));
-      if (loop && accept(*loop, f, d)) return loop;
-    }
-    return {};
-  }
-
- private:
-  bool accept(const LevelLoop& loop, double base, double diameter) {
-    if (perimeter(loop) > 1.6 * kPi * diameter) return false;
-    for (const EdgeCrossing& c : loop) {
-      const Vec3 &low = field_.mesh.positions[c.below], &high = field_.mesh.positions[c.above];
-      const double part = (c.point - low).norm() / (high - low).norm();
-      const double f = (1 - part) * field_.distance[c.below] + part * field_.distance[c.above];
-      if (f < base || taken_[c.triangle]) return false;
-    }
-    for (const EdgeCrossing& c : loop) taken_[c.triangle] = 1;
-    return true;
-  }
-
-  const SkinField& field_;
-  std::vector<uint8_t> taken_;
 };
 
 /// The pieces as a partition of the skin's triangles, some of them split along the cuts.
@@ -120,8 +65,8 @@ class Partition {
     while (!stack.empty()) {
       const uint32_t v = stack.back();
       stack.pop_back();
-      for (uint32_t i = field_.first[v]; i < field_.first[v + 1]; ++i)
-        for (const uint32_t u : mesh.triangles[field_.around[i]]) {
+      for (const uint32_t i : field_.around.of(v))
+        for (const uint32_t u : mesh.triangles[i]) {
           if (u == v) continue;
           const auto crossing = crossings_.find(edge_key(u, v));
           int wanted = label_[v];
@@ -213,24 +158,12 @@ class Partition {
     const std::array<int, 3> s = {side(t[0]), side(t[1]), side(t[2])};
     const int highest = *std::max_element(s.begin(), s.end()), lowest = *std::min_element(s.begin(), s.end());
     if (highest <= 0 || lowest >= 0) return add(t, label(highest));
-    const auto zero = std::find(s.begin(), s.end(), 0) - s.begin();
-    if (zero < 3) {
-      const uint32_t o = t[zero], p = t[(zero + 1) % 3], q = t[(zero + 2) % 3], m = point_on(p, q);
-      add({o, p, m}, label(s[(zero + 1) % 3]));
-      add({o, m, q}, label(s[(zero + 2) % 3]));
-      return;
-    }
-    const int lone = s[0] + s[1] + s[2] > 0 ? -1 : 1;
-    const auto k = std::find(s.begin(), s.end(), lone) - s.begin();
-    const uint32_t o = t[k], p = t[(k + 1) % 3], q = t[(k + 2) % 3], m = point_on(o, p), n = point_on(o, q);
-    add({o, m, n}, label(lone));
-    if ((positions_[m] - positions_[q]).squaredNorm() <= (positions_[n] - positions_[p]).squaredNorm()) {
-      add({m, p, q}, label(-lone));
-      add({m, q, n}, label(-lone));
-    } else {
-      add({m, p, n}, label(-lone));
-      add({p, q, n}, label(-lone));
-    }
+    const auto shorter = [&](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+      return (positions_[a] - positions_[b]).squaredNorm() <= (positions_[c] - positions_[d]).squaredNorm();
+    };
+    split_triangle(
+        t, s, [&](uint32_t a, uint32_t b) { return point_on(a, b); }, shorter,
+        [&](const Triangle& part, int on) { add(part, label(on)); });
   }
 
   /// Every cut must leave one simple loop on the side beyond; one that does not is done again without
@@ -240,13 +173,13 @@ class Partition {
     std::unordered_map<uint64_t, int> owner;  // of directed edges
     for (size_t i = 0; i < triangles_.size(); ++i)
       for (int k = 0; k < 3; ++k)
-        owner[uint64_t{triangles_[i][k]} << 32 | triangles_[i][(k + 1) % 3]] = labels_[i];
+        owner[directed_edge_key(triangles_[i][k], triangles_[i][(k + 1) % 3])] = labels_[i];
     std::vector<std::unordered_map<uint32_t, uint32_t>> next(cuts_.size());
     std::vector<size_t> edges(cuts_.size(), 0);
     for (size_t i = 0; i < triangles_.size(); ++i)
       for (int k = 0; k < 3; ++k) {
         const uint32_t a = triangles_[i][k], b = triangles_[i][(k + 1) % 3];
-        const int own = labels_[i], other = owner[uint64_t{b} << 32 | a];
+        const int own = labels_[i], other = owner[directed_edge_key(b, a)];
         if (own == other || own == 0 || cuts_[own - 1].below != other) continue;
         next[own - 1][a] = b;
         ++edges[own - 1];

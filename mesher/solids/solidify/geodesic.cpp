@@ -5,6 +5,8 @@
 #include <limits>
 #include <queue>
 
+#include "mesher/geometry/mesh_checks.h"
+
 namespace liana {
 namespace {
 
@@ -15,17 +17,9 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 class Front {
  public:
   Front(const Mesh& mesh, const std::vector<uint8_t>& is_source)
-      : mesh_(mesh), distance_(mesh.positions.size(), kFar), origin_(mesh.positions) {
+      : mesh_(mesh), distance_(mesh.positions.size(), kFar), origin_(mesh.positions), around_(mesh) {
     for (size_t v = 0; v < distance_.size(); ++v)
       if (is_source[v]) distance_[v] = 0;
-    first_.assign(mesh.positions.size() + 1, 0);
-    for (const Triangle& t : mesh.triangles)
-      for (const uint32_t v : t) ++first_[v + 1];
-    for (size_t v = 0; v + 1 < first_.size(); ++v) first_[v + 1] += first_[v];
-    around_.resize(3 * mesh.triangles.size());
-    std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
-    for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
-      for (const uint32_t v : mesh.triangles[i]) around_[next[v]++] = i;
   }
 
   std::vector<double> run() {
@@ -49,8 +43,8 @@ class Front {
       const auto [distance, vertex] = queue.top();
       queue.pop();
       if (distance > distance_[vertex]) continue;
-      for (uint32_t i = first_[vertex]; i < first_[vertex + 1]; ++i) {
-        const Triangle& t = mesh_.triangles[around_[i]];
+      for (const uint32_t i : around_.of(vertex)) {
+        const Triangle& t = mesh_.triangles[i];
         const std::array<double, 3> before = {distance_[t[0]], distance_[t[1]], distance_[t[2]]};
         relax(t);
         for (int k = 0; k < 3; ++k)
@@ -109,8 +103,8 @@ class Front {
 
   const Mesh& mesh_;
   std::vector<double> distance_;
-  std::vector<Vec3> origin_;              // where on the sources the path to a vertex begins
-  std::vector<uint32_t> first_, around_;  // triangles around a vertex: around_[first_[v] .. first_[v + 1])
+  std::vector<Vec3> origin_;  // where on the sources the path to a vertex begins
+  VertexTriangles around_;
 };
 
 }  // namespace

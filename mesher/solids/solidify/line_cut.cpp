@@ -1,10 +1,13 @@
 #include "mesher/solids/solidify/line_cut.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <unordered_map>
 
+#include "mesher/geometry/edge_key.h"
 #include "mesher/geometry/mesh_checks.h"
+#include "mesher/geometry/split_triangle.h"
 
 namespace liana {
 namespace {
@@ -37,38 +40,27 @@ class LineCut {
 
   void split(size_t index) {
     const Triangle t = surface_.mesh.triangles[index];
-    const int below = (side_[t[0]] < 0) + (side_[t[1]] < 0) + (side_[t[2]] < 0);
-    const int above = (side_[t[0]] > 0) + (side_[t[1]] > 0) + (side_[t[2]] > 0);
-    if (below == 0 || above == 0) return;
+    const std::array<int, 3> side{side_[t[0]], side_[t[1]], side_[t[2]]};
+    const auto [lowest, highest] = std::minmax_element(side.begin(), side.end());
+    if (*lowest >= 0 || *highest <= 0) return;
     const Vec3 normal = area_vector(surface_.mesh, t).normalized();
-    if (below + above == 2) {  // one corner on the line: cut from it to the opposite edge
-      const int k = side_[t[0]] == 0 ? 0 : side_[t[1]] == 0 ? 1 : 2;
-      const uint32_t o = t[k], p = t[(k + 1) % 3], q = t[(k + 2) % 3], m = point_between(p, q, normal);
-      replace(index, {o, p, m});
-      add(index, {o, m, q});
-      return;
-    }
-    // One corner alone on its side: a triangle there and a quadrangle, which is halved along its shorter
-    // diagonal (by a margin, so that the copies of a symmetric leaf are cut alike whatever the last bits
-    // say).
-    const int lone = below == 1 ? -1 : 1;
-    const int k = side_[t[0]] == lone ? 0 : side_[t[1]] == lone ? 1 : 2;
-    const uint32_t o = t[k], p = t[(k + 1) % 3], q = t[(k + 2) % 3];
-    const uint32_t m = point_between(o, p, normal), n = point_between(o, q, normal);
-    replace(index, {o, m, n});
     const std::vector<Vec3>& at = surface_.mesh.positions;
-    if ((at[m] - at[q]).squaredNorm() <= 1.001 * (at[n] - at[p]).squaredNorm()) {
-      add(index, {m, p, q});
-      add(index, {m, q, n});
-    } else {
-      add(index, {m, p, n});
-      add(index, {p, q, n});
-    }
+    // By a margin, so that the copies of a symmetric leaf are cut alike whatever the last bits say.
+    const auto shorter = [&](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+      return (at[a] - at[b]).squaredNorm() <= 1.001 * (at[c] - at[d]).squaredNorm();
+    };
+    bool first = true;
+    split_triangle(
+        t, side, [&](uint32_t a, uint32_t b) { return point_between(a, b, normal); }, shorter,
+        [&](const Triangle& part, int) {
+          first ? replace(index, part) : add(index, part);
+          first = false;
+        });
   }
 
   uint32_t point_between(uint32_t a, uint32_t b, const Vec3& normal) {
     if (a > b) std::swap(a, b);  // the same point from both triangles, to the last bit
-    const auto [it, is_new] = on_edge_.try_emplace(uint64_t{a} << 32 | b, points_.size());
+    const auto [it, is_new] = on_edge_.try_emplace(edge_key(a, b), points_.size());
     if (is_new) {
       const double da = surface_.distance[a], db = surface_.distance[b];
       const double f = (level_ - da) / (db - da);

@@ -1,4 +1,4 @@
-// How near a point is to what a domain grows from.
+// What a domain stands on, and how near a point is to it.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace liana {
 
-/// What a domain is attached to: its parent's surface, or the ground for a trunk.
+/// What a domain stands on: its parent's surface, or the ground for a trunk.
 class ParentSurface {
  public:
   ParentSurface(const SegmentedPlant& plant, DomainId domain);

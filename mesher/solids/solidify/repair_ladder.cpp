@@ -74,7 +74,7 @@ bool has_border(const Mesh& mesh) {
 class Ladder {
  public:
   Ladder(const SegmentedPlant& plant, DomainId id)
-      : domain_(plant.domains[id.index()]), attachment_(plant, id) {}
+      : domain_(plant.domains[id.index()]), support_(plant, id) {}
 
   SolidDomain climb() {
     if (auto solid = try_surface(domain_.surface, "", {})) return *solid;
@@ -85,7 +85,7 @@ class Ladder {
         return *solid;
     if (auto solid = untangle(mended)) return *solid;
     if (auto solid = wrap(mended.mesh)) return *solid;
-    auto beam = beam_shape(domain_, attachment_);
+    auto beam = beam_shape(domain_, support_);
     if (!beam || is_short(*beam)) throw reason;
     // A wide sheet has no centreline to speak of, and a folded one is no tube.
     beam->route = domain_.kind == DomainKind::Leaf ? "rough-beam" : "beam";
@@ -116,7 +116,7 @@ class Ladder {
   std::optional<SolidDomain> try_surface(const Mesh& surface, const std::string& notes, const Loss& loss) {
     attempt_ = {};
     try {
-      SolidDomain solid = attempt_solid(domain_, surface, attachment_, attempt_);
+      SolidDomain solid = attempt_solid(domain_, surface, support_, attempt_);
       if (domain_.kind == DomainKind::Branch &&
           (attempt_.kept < kWholePart || (attempt_.is_sheet && !notes.empty()))) {
         failure_ = Error(Error::Kind::Input, fmt::format("domain '{}': it is in pieces", domain_.name),
@@ -180,7 +180,7 @@ class Ladder {
   }
 
   const Domain& domain_;
-  ParentSurface attachment_;
+  ParentSurface support_;
   Attempt attempt_;  // of the last try
   std::optional<Error> failure_;
 };

@@ -130,11 +130,11 @@ std::vector<Vec3> long_axes(const Mesh& mesh, const std::vector<std::vector<uint
 }  // namespace
 
 size_t root_loop(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loops,
-                 const ParentSurface& attachment) {
+                 const ParentSurface& support) {
   size_t best = loops.size();
   double least = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < loops.size(); ++i) {
-    const double depth = attachment.depth(loop_middle(mesh, loops[i]));
+    const double depth = support.depth(loop_middle(mesh, loops[i]));
     if (depth < least) {
       least = depth;
       best = i;
@@ -145,16 +145,16 @@ size_t root_loop(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loo
   if (least < 0) return best;  // inside the parent
   // A closed root end lies nearer to the parent than the nearest hole, by more than the hole's width.
   const double width = 2 * std::sqrt(lid_area(mesh, loops[best]) / kPi);
-  const uint32_t nearest = attachment.nearest(mesh, all_vertices(mesh));
-  const bool at_loop = attachment.depth(mesh.positions[nearest]) > least - width;
+  const uint32_t nearest = support.nearest(mesh, all_vertices(mesh));
+  const bool at_loop = support.depth(mesh.positions[nearest]) > least - width;
   return at_loop ? best : loops.size();
 }
 
-std::vector<uint8_t> root_end(const Mesh& mesh, const Adjacency& adjacency, const ParentSurface& attachment) {
+std::vector<uint8_t> root_end(const Mesh& mesh, const Adjacency& adjacency, const ParentSurface& support) {
   // The nearest vertex may lie anywhere around the foot (the parent's bark cuts through it); the point
   // farthest from the tip is the end itself.
   std::vector<double> from_near, from_tip;
-  uint32_t end = attachment.nearest(mesh, all_vertices(mesh));
+  uint32_t end = support.nearest(mesh, all_vertices(mesh));
   const uint32_t tip = farthest(mesh, end, from_near);
   const uint32_t opposite = farthest(mesh, tip, from_tip);
   if (from_near[opposite] < 0.3 * from_near[tip]) end = opposite;
@@ -201,7 +201,7 @@ std::vector<uint8_t> root_end(const Mesh& mesh, const Adjacency& adjacency, cons
 }
 
 SheetRoot sheet_root(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loops,
-                     const ParentSurface& attachment) {
+                     const ParentSurface& support) {
   std::vector<uint32_t> border;
   for (const std::vector<uint32_t>& loop : loops) border.insert(border.end(), loop.begin(), loop.end());
   // A blade may touch its twig anywhere; its base is at an end of its long axis and at the parent.
@@ -217,7 +217,7 @@ SheetRoot sheet_root(const Mesh& mesh, const std::vector<std::vector<uint32_t>>&
     int count = 0;
     for (const uint32_t v : border)
       if (mesh.positions[v].dot(candidate) <= low + kRootStrip * (high - low))
-        height += attachment.height(mesh.positions[v]), ++count;
+        height += support.height(mesh.positions[v]), ++count;
     if (const double score = high - low - 2 * height / count; score > best)
       best = score, axis = candidate, base = low, length = high - low;
   }

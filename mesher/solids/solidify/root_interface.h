@@ -10,11 +10,11 @@ namespace liana {
 
 /// The border loop at the root of an open body, or loops.size() if the root end is closed.
 size_t root_loop(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loops,
-                 const ParentSurface& attachment);
+                 const ParentSurface& support);
 
-/// Marks the end of a closed, outward body that is nearest to its attachment: the faces around the point
+/// Marks the end of a closed, outward body that is nearest to its support: the faces around the point
 /// farthest from the other end that look away from it, up to the first crease.
-std::vector<uint8_t> root_end(const Mesh& mesh, const Adjacency& adjacency, const ParentSurface& attachment);
+std::vector<uint8_t> root_end(const Mesh& mesh, const Adjacency& adjacency, const ParentSurface& support);
 
 /// The root of a sheet.
 struct SheetRoot {
@@ -23,9 +23,9 @@ struct SheetRoot {
   double strip = 0;                         ///< m: what is nearer to the point is held
 };
 
-/// The base of a sheet is the end of its long axis that is nearest to the attachment: the edges across it
+/// The base of a sheet is the end of its long axis that is nearest to the support: the edges across it
 /// within 4 % of the sheet's length, or a point.
 SheetRoot sheet_root(const Mesh& mesh, const std::vector<std::vector<uint32_t>>& loops,
-                     const ParentSurface& attachment);
+                     const ParentSurface& support);
 
 }  // namespace liana

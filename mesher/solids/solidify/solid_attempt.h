@@ -15,7 +15,7 @@ struct Attempt {
 };
 
 /// clean_shell, then lids or a sheet's thickness, root, rings, centreline. Throws Error{Input}.
-SolidDomain attempt_solid(const Domain& domain, const Mesh& surface, const ParentSurface& attachment,
+SolidDomain attempt_solid(const Domain& domain, const Mesh& surface, const ParentSurface& support,
                           Attempt& attempt);
 
 }  // namespace liana

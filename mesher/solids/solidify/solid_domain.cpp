@@ -41,12 +41,12 @@ std::vector<double> distance_from_root(const Mesh& mesh, const std::vector<uint8
 
 /// Closes the open ends, turns the surface outward and finds the root on it.
 Rooted body(const Mesh& shell, const Adjacency& adjacency, const std::vector<std::vector<uint32_t>>& loops,
-            const ParentSurface& attachment, const std::string& where) {
+            const ParentSurface& support, const std::string& where) {
   Rooted result;
   Mesh& mesh = result.surface.mesh;
   mesh = shell;
   const size_t modelled = mesh.positions.size();
-  const size_t root = root_loop(mesh, loops, attachment);
+  const size_t root = root_loop(mesh, loops, support);
   std::vector<uint8_t>& is_root = result.surface.is_root;
   is_root.assign(mesh.triangles.size(), 0);
   for (size_t i = 0; i < loops.size(); ++i) is_root.insert(is_root.end(), add_lid(mesh, loops[i]), i == root);
@@ -61,7 +61,7 @@ Rooted body(const Mesh& shell, const Adjacency& adjacency, const std::vector<std
   }
   result.route = (loops.empty() ? "closed" : "capped") + result.route;
   if (root == loops.size())
-    is_root = root_end(mesh, loops.empty() ? adjacency : find_adjacency(mesh), attachment);
+    is_root = root_end(mesh, loops.empty() ? adjacency : find_adjacency(mesh), support);
 
   double root_area = 0;
   for (size_t i = 0; i < is_root.size(); ++i)
@@ -80,8 +80,8 @@ Rooted body(const Mesh& shell, const Adjacency& adjacency, const std::vector<std
 using Edges = std::set<std::pair<uint32_t, uint32_t>>;
 
 /// The edges at the root of the sheet; a pointed base is cut where its root ends.
-Edges root_edges(Mesh& mesh, std::vector<std::vector<uint32_t>> loops, const ParentSurface& attachment) {
-  const SheetRoot found = sheet_root(mesh, loops, attachment);
+Edges root_edges(Mesh& mesh, std::vector<std::vector<uint32_t>> loops, const ParentSurface& support) {
+  const SheetRoot found = sheet_root(mesh, loops, support);
   const bool pointed = found.point != Id<Mesh>::kNone;
   const Vec3 point = pointed ? mesh.positions[found.point] : Vec3::Zero();
   constexpr double kSnap = 0.25;
@@ -107,11 +107,11 @@ Edges root_edges(Mesh& mesh, std::vector<std::vector<uint32_t>> loops, const Par
 
 /// Finds the root on the sheet's border, grades and refines the sheet and gives it its thickness.
 Rooted sheet(const Mesh& shell, const std::vector<std::vector<uint32_t>>& loops, double thickness,
-             const ParentSurface& attachment) {
+             const ParentSurface& support) {
   Rooted result;
   result.route = "sheet-extruded";
   MarkedSurface graded{shell, {}, {}};
-  const Edges root = root_edges(graded.mesh, loops, attachment);
+  const Edges root = root_edges(graded.mesh, loops, support);
   std::vector<uint8_t> source(graded.mesh.positions.size(), 0);
   for (const auto& [a, b] : root) {
     source[a] = source[b] = 1;
@@ -163,7 +163,7 @@ Vec3 centre_of_root(const MarkedSurface& surface) {
 
 }  // namespace
 
-SolidDomain attempt_solid(const Domain& domain, const Mesh& surface, const ParentSurface& attachment,
+SolidDomain attempt_solid(const Domain& domain, const Mesh& surface, const ParentSurface& support,
                           Attempt& attempt) {
   const std::string where = fmt::format("domain '{}'", domain.name);
   const auto fail = [&](const std::string& reason, const std::string& hint) {
@@ -177,8 +177,8 @@ SolidDomain attempt_solid(const Domain& domain, const Mesh& surface, const Paren
   const std::vector<std::vector<uint32_t>> loops = border_loops(shell.mesh, adjacency);
   const bool flat = !loops.empty() && is_sheet(shell.mesh, loops);
   attempt.is_sheet = flat;
-  Rooted rooted = flat ? sheet(shell.mesh, loops, domain.thickness, attachment)
-                       : body(shell.mesh, adjacency, loops, attachment, where);
+  Rooted rooted = flat ? sheet(shell.mesh, loops, domain.thickness, support)
+                       : body(shell.mesh, adjacency, loops, support, where);
 
   SolidDomain solid;
   solid.length = rooted.length;
