@@ -6,22 +6,16 @@
 
 #include "mesher/base/error.h"
 #include "mesher/base/nearest_word.h"
+#include "runtime/sim/model/grab_spring.h"
 #include "runtime/world/world.h"
 
 namespace liana {
 namespace {
 
-constexpr double kStretchUnderWeight = 0.02;  // m: of a grab that holds the whole plant
-constexpr double kStillWithin = 0.01;         // m, that a part moves at most while it is at rest
-constexpr double kStillFor = 1;               // s, after which it sleeps
-constexpr double kAway = 500;                 // m from the origin, beyond which a part has left the scene
-constexpr double kTearOff = 0.02;             // m, at which a dead root lets go
-
-double weight_of(const Plant& plant) {
-  double mass = 0;
-  for (const Particle& particle : plant.particles) mass += particle.mass;
-  return 9.81 * mass;
-}
+constexpr double kStillWithin = 0.01;  // m, that a part moves at most while it is at rest
+constexpr double kStillFor = 1;        // s, after which it sleeps
+constexpr double kAway = 500;          // m from the origin, beyond which a part has left the scene
+constexpr double kTearOff = 0.02;      // m, at which a dead root lets go
 
 }  // namespace
 
@@ -86,13 +80,9 @@ void World::start_events() {
       gone("grab");
       continue;
     }
-    const Plant& plant = inhabitants_[place->first]->plant;
-    const double stiffness = entry.strength * weight_of(plant) / kStretchUnderWeight;
-    WorldSpring spring;
-    spring.particle = place->second;
-    spring.stiffness = stiffness * Mat3::Identity();
-    spring.damping = 2 * scene_.time_step * spring.stiffness;
-    scripted_.push_back({place->first, spring, plant.motion[place->second.index()].position, &entry});
+    const WorldSpring spring = grab_spring(inhabitants_[place->first]->plant, place->second, Vec3::Zero(),
+                                           scene_.gravity, scene_.time_step, entry.strength);
+    scripted_.push_back({place->first, spring, spring.target, &entry});
   }
 }
 
