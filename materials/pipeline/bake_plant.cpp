@@ -1,31 +1,49 @@
 #include "materials/pipeline/bake_plant.h"
 
-#include "materials/pipeline/stages.h"
+#include "materials/pipeline/apply_laws.h"
+#include "materials/pipeline/bake_notes.h"
 #include "mesher/base/stopwatch.h"
 
 namespace liana {
 
 BakeResult bake_plant(const SegmentedPlant& plant, const SpeciesLaw& species, const BakeOptions& options,
                       Progress& progress) {
-  BakeResult result;
   const Stopwatch whole;
-  Stages stages(plant, species, options, progress);
+  BakeResult result;
+  const std::vector<std::string> groups = groups_of(plant, species);
+  const BakeJob job{plant, species, groups, options, progress};
 
-  result.seconds.surface = timed([&] { stages.make_surfaces(); });
+  std::vector<DomainSolid> solids;
+  result.seconds.surface = timed([&] { solids = make_solids(job); });
+  LeftOut left_out = failures_of(solids);
+  left_out.refuse(plant, options.strict);
+
   // A domain without modes is left out, and its ancestors carry less: solve again until all that remain have
   // modes.
+  std::vector<DomainModes> modes;
+  double tet_seconds = 0, mode_seconds = 0;
   const double solving = timed([&] {
-    do stages.carry_descendants();
-    while (!stages.find_modes());
+    for (bool again = true; again;) {
+      const std::vector<std::vector<CarriedMass>> carried = carried_masses(job, solids, left_out);
+      FoundModes found = find_modes(job, solids, carried, left_out);
+      tet_seconds += found.tet_seconds, mode_seconds += found.mode_seconds;
+      modes = std::move(found.modes);
+      again = left_out.add(found.failures);
+      left_out.refuse(plant, options.strict);
+    }
   });
-  const double worked = stages.tet_seconds() + stages.mode_seconds();  // none if all was in the cache
-  const double tets_share = worked > 0 ? stages.tet_seconds() / worked : 0;
-  result.seconds.tets = tets_share * solving;
-  result.seconds.modal = (1 - tets_share) * solving;
-  result.seconds.laws = timed([&] { result.bake = stages.apply_laws(); });
+  const double worked = tet_seconds + mode_seconds;  // none if all was in the cache
+  result.seconds.tets = worked > 0 ? tet_seconds / worked * solving : 0;
+  result.seconds.modal = solving - result.seconds.tets;
 
-  result.baked_as = stages.baked_as();
-  result.notes = stages.notes();
+  result.seconds.laws = timed([&] {
+    const ChosenMaterials chosen = choose_materials(job, solids, modes, left_out);
+    result.bake = apply_laws(job, solids, modes, chosen.materials, left_out);
+    result.notes = chosen.notes;
+  });
+  const std::vector<std::string> notes = bake_notes(job, solids, modes, left_out);
+  result.notes.insert(result.notes.end(), notes.begin(), notes.end());
+  result.baked_as = ids_in_bake(plant.domains.size(), left_out);
   result.seconds.total = whole.seconds();
   return result;
 }

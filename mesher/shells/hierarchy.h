@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mesher/plant/segmented_plant.h"
+#include "mesher/shells/hierarchy_weights.h"
 #include "mesher/shells/shell_shape.h"
 
 namespace liana {
@@ -24,6 +25,7 @@ struct Growth {
 /// branch. The confidence is that of the chosen pair among all of the shell's, as exp(-cost / 0.12). `up` is
 /// a unit vector. Needs a branch. Time n log n.
 std::vector<Growth> find_growth(const std::vector<ShellShape>& shapes, const std::vector<DomainKind>& kinds,
-                                const std::vector<int>& known_parents, const Vec3& up);
+                                const std::vector<int>& known_parents, const Vec3& up,
+                                const HierarchyWeights& weights = {});
 
 }  // namespace liana

@@ -6,7 +6,7 @@
 
 #include "mesher/base/error.h"
 #include "modal/elements/strain_energy.h"
-#include "modal/solve/subspace_iteration.h"
+#include "modal/solve/eigenpairs.h"
 
 namespace liana {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "mesher/base/error.h"
 #include "modal/elements/interpolation.h"
-#include "modal/solve/subspace_iteration.h"
+#include "modal/solve/eigenpairs.h"
 
 namespace liana {
 namespace {

@@ -17,6 +17,54 @@ struct BakeArguments {
   std::string shard;
 };
 
+/// The bake, and what is to be written beside it.
+void add_output_options(CLI::App& verb, BakeRun& run) {
+  verb.add_option("-o,--output", run.output, "The bake to write [the plant's name with .bake, here]");
+  verb.add_option("--report", run.report, "Also write what was found as JSON");
+  verb.add_option("--html", run.html, "Also write it as a page for a browser: 3-D view, curves, table")
+      ->option_text("FILE");
+  verb.add_option("--compare-models", run.models, "Also write what each material model would give, as CSV")
+      ->option_text("FILE");
+  verb.add_option("--vtu", run.vtu,
+                  "Also write the tets with frequency, material and lowest mode for ParaView");
+}
+
+/// What is baked: the law, its model and the domains.
+void add_law_options(CLI::App& verb, BakeRun& run) {
+  verb.add_option("--set", run.overrides,
+                  "Change a number of the species, as level0.reference_frequency=1.2; repeatable")
+      ->allow_extra_args(false)
+      ->option_text("KEY=VALUE");
+  verb.add_option("--model", run.model,
+                  "What gives frequencies: power (law), constant, depth or median [the species', power]")
+      ->check([](const std::string& name) {
+        const std::string problem = model_name_problem(name);
+        return problem.empty() ? problem : "--model " + problem;
+      })
+      ->option_text("NAME");
+  verb.add_option("--merge-below", run.merge_below,
+                  "Make a branch of this level and all branches on it one domain (0: the trunk)")
+      ->check(CLI::Range(0, 1000))
+      ->option_text("LEVEL");
+}
+
+/// How it is computed.
+void add_work_options(CLI::App& verb, BakeRun& run) {
+  verb.add_option("--element", run.options.element, "T10 (accurate) or T4 (far too stiff: for comparison)")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Element>{{"T10", Element::T10}, {"T4", Element::T4}}, CLI::ignore_case))
+      ->option_text("T10|T4");
+  verb.add_option("--threads", run.options.threads, "Threads to use [all cores]")
+      ->check(CLI::Range(0, 1024))
+      ->option_text("N");
+  verb.add_option("--cache-dir", run.cache_folder,
+                  "Where solids and modes are kept for the next bake of the plant")
+      ->option_text("FOLDER")
+      ->default_str("$XDG_CACHE_HOME/liana");
+  verb.add_flag("--no-cache", run.no_cache, "Compute everything, keep nothing");
+  verb.add_flag("--strict", run.options.strict, "Stop at the first domain that cannot be made solid");
+}
+
 /// --manifest and the options that go with it; the others belong into the manifest.
 void add_manifest_options(CLI::App& verb, BakeArguments& arguments) {
   CLI::Option* manifest =
@@ -60,47 +108,9 @@ void add_bake_verb(CLI::App& app, int& exit_code) {
   verb->add_option("-s,--species", arguments->one.species,
                    "A preset's name (see liana inspect --species) or a .toml file")
       ->option_text("NAME");
-  verb->add_option("-o,--output", arguments->one.output,
-                   "The bake to write [the plant's name with .bake, here]");
-  verb->add_option("--report", arguments->one.report, "Also write what was found as JSON");
-  verb->add_option("--html", arguments->one.html,
-                   "Also write it as a page for a browser: 3-D view, curves, table")
-      ->option_text("FILE");
-  verb->add_option("--compare-models", arguments->one.models,
-                   "Also write what each material model would give, as CSV")
-      ->option_text("FILE");
-  verb->add_option("--vtu", arguments->one.vtu,
-                   "Also write the tets with frequency, material and lowest mode for ParaView");
-  verb->add_option("--set", arguments->one.overrides,
-                   "Change a number of the species, as level0.reference_frequency=1.2; repeatable")
-      ->allow_extra_args(false)
-      ->option_text("KEY=VALUE");
-  verb->add_option("--model", arguments->one.model,
-                   "What gives frequencies: power (law), constant, depth or median [the species', power]")
-      ->check([](const std::string& name) {
-        const std::string problem = model_name_problem(name);
-        return problem.empty() ? problem : "--model " + problem;
-      })
-      ->option_text("NAME");
-  verb->add_option("--merge-below", arguments->one.merge_below,
-                   "Make a branch of this level and all branches on it one domain (0: the trunk)")
-      ->check(CLI::Range(0, 1000))
-      ->option_text("LEVEL");
-  verb->add_option("--element", arguments->one.options.element,
-                   "T10 (accurate) or T4 (far too stiff: for comparison)")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Element>{{"T10", Element::T10}, {"T4", Element::T4}}, CLI::ignore_case))
-      ->option_text("T10|T4");
-  verb->add_option("--threads", arguments->one.options.threads, "Threads to use [all cores]")
-      ->check(CLI::Range(0, 1024))
-      ->option_text("N");
-  verb->add_option("--cache-dir", arguments->one.cache_folder,
-                   "Where solids and modes are kept for the next bake of the plant")
-      ->option_text("FOLDER")
-      ->default_str("$XDG_CACHE_HOME/liana");
-  verb->add_flag("--no-cache", arguments->one.no_cache, "Compute everything, keep nothing");
-  verb->add_flag("--strict", arguments->one.options.strict,
-                 "Stop at the first domain that cannot be made solid");
+  add_output_options(*verb, arguments->one);
+  add_law_options(*verb, arguments->one);
+  add_work_options(*verb, arguments->one);
   verb->footer(
       "Example:\n"
       "  liana bake data/plants/apple_small.glb --species apple -o apple.bake --report report.json\n"

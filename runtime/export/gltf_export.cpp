@@ -25,8 +25,8 @@ GltfSurface tube_surface(const DrawTube& tube, int sides) {
   append_tube(tube, sides, mesh);
   GltfSurface surface;
   for (const TubeVertex& vertex : mesh.vertices) {
-    surface.positions.emplace_back(vertex.position.data());
-    surface.normals.emplace_back(vertex.normal.data());
+    surface.positions.emplace_back(vertex.position.x, vertex.position.y, vertex.position.z);
+    surface.normals.emplace_back(vertex.normal.x, vertex.normal.y, vertex.normal.z);
   }
   surface.triangles = std::move(mesh.triangles);
   return surface;
@@ -51,7 +51,7 @@ GltfSurface blade_surface(LeafOutline outline, double curl) {
   unit.curl = curl;
   const LeafShape& shape = leaf_shape(outline);
   Mesh mesh;
-  for (const Eigen::Vector2f& point : shape.points) mesh.positions.push_back(blade_point(unit, point));
+  for (const glm::vec2& point : shape.points) mesh.positions.push_back(blade_point(unit, point));
   mesh.triangles = shape.triangles;
   return split_surface(mesh);
 }

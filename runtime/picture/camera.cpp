@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/type_ptr.hpp>
 #include <sstream>
 
 #include "mesher/base/error.h"
+#include "runtime/picture/glm_types.h"
 
 namespace liana {
 namespace {
@@ -71,17 +70,12 @@ double Camera::near_plane() const {
   return std::max(0.005, 0.02 * distance);
 }
 
-Eigen::Matrix4f Camera::view() const {
-  const Vec3 from = eye(), way = up();
-  const glm::mat4 matrix =
-      glm::lookAt(glm::dvec3(from.x(), from.y(), from.z()), glm::dvec3(pivot.x(), pivot.y(), pivot.z()),
-                  glm::dvec3(way.x(), way.y(), way.z()));
-  return Eigen::Map<const Eigen::Matrix4f>(glm::value_ptr(matrix));
+glm::mat4 Camera::view() const {
+  return glm::mat4(glm::lookAt(to_glm(eye()), to_glm(pivot), to_glm(up())));
 }
 
-Eigen::Matrix4f Camera::projection(double aspect) const {
-  const glm::mat4 matrix = glm::perspective(field_of_view, aspect, near_plane(), kFar);
-  return Eigen::Map<const Eigen::Matrix4f>(glm::value_ptr(matrix));
+glm::mat4 Camera::projection(double aspect) const {
+  return glm::mat4(glm::perspective(field_of_view, aspect, near_plane(), kFar));
 }
 
 Ray Camera::ray(double x, double y, int width, int height) const {

@@ -1,7 +1,7 @@
 // A turntable camera: it looks at a pivot from a distance, +Y stays up.
 #pragma once
 
-#include <Eigen/Dense>
+#include <glm/mat4x4.hpp>
 #include <string>
 #include <string_view>
 
@@ -35,9 +35,9 @@ struct Camera {
   /// Moves pivot and distance so that the box fills the picture; keeps the direction of view.
   void frame(const BoundingBox& box, double aspect);
 
-  Eigen::Matrix4f view() const;
-  Eigen::Matrix4f projection(double aspect) const;  ///< OpenGL clip space
-  double near_plane() const;                        ///< m
+  glm::mat4 view() const;
+  glm::mat4 projection(double aspect) const;  ///< OpenGL clip space
+  double near_plane() const;                  ///< m
   /// Ray through a pixel (x right, y down, from the upper left corner).
   Ray ray(double x, double y, int width, int height) const;
   /// Pixel of a point (x right, y down) and its depth along the view in m; the pixel means nothing for depth

@@ -55,8 +55,8 @@ const LeafShape& leaf_shape(LeafOutline outline) {
   return outline == LeafOutline::Ivy ? ivy : ovate;
 }
 
-Vec3 blade_point(const DrawLeaf& leaf, const Eigen::Vector2f& p) {
-  const double x = p.x() * leaf.width, lift = kLeafFold * std::abs(x), y = p.y();
+Vec3 blade_point(const DrawLeaf& leaf, const glm::vec2& p) {
+  const double x = p.x * leaf.width, lift = kLeafFold * std::abs(x), y = p.y;
   // The midrib is a circular arc; a small curl is its limit, a straight line.
   const double turn = std::abs(leaf.curl) < 1e-3 ? 1e-3 : leaf.curl, angle = turn * y;
   return {x, leaf.length / turn * std::sin(angle) + lift * std::sin(angle),

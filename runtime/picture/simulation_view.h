@@ -19,6 +19,7 @@ class Simulation {
   virtual ~Simulation() = default;
   virtual void step() = 0;
   virtual double time_step() const = 0;  ///< s
+  virtual Vec3 gravity() const = 0;      ///< m/s²
   virtual void draw(DrawScene& scene) const = 0;
   virtual size_t plant_count() const = 0;
   virtual const Plant& plant(size_t index) const = 0;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "mesher/base/error.h"
-#include "runtime/picture/pack.h"
 
 namespace liana {
 namespace {
@@ -50,10 +49,6 @@ std::vector<Ring> rings_of(const DrawTube& tube) {
   return rings;
 }
 
-std::array<float, 3> floats(const Vec3& v) {
-  return {float(v.x()), float(v.y()), float(v.z())};
-}
-
 }  // namespace
 
 void append_tube(const DrawTube& tube, int sides, TubeMesh& mesh) {
@@ -67,9 +62,9 @@ void append_tube(const DrawTube& tube, int sides, TubeMesh& mesh) {
   rings.push_back({end.centre + part * end.tangent, end.tangent, end.side, part, -1, end.along + part});
 
   const auto first = uint32_t(mesh.vertices.size());
-  const std::array<uint8_t, 4> color = packed_color(tube.color);
+  const glm::u8vec4 color = packed_color(tube.color);
   const auto pole = [&](const Vec3& position, const Vec3& normal, double along) {
-    mesh.vertices.push_back({floats(position), floats(normal), {0, 0, float(along)}, color});
+    mesh.vertices.push_back({to_glm_float(position), to_glm_float(normal), {0, 0, float(along)}, color});
     return uint32_t(mesh.vertices.size() - 1);
   };
   for (const Ring& ring : rings) {
@@ -77,8 +72,8 @@ void append_tube(const DrawTube& tube, int sides, TubeMesh& mesh) {
     for (int k = 0; k < sides; ++k) {
       const double angle = 2 * kPi * k / sides, c = std::cos(angle), s = std::sin(angle);
       const Vec3 outwards = c * ring.side + s * other;
-      mesh.vertices.push_back({floats(ring.centre + ring.radius * outwards),
-                               floats((outwards - ring.widening * ring.tangent).normalized()),
+      mesh.vertices.push_back({to_glm_float(ring.centre + ring.radius * outwards),
+                               to_glm_float((outwards - ring.widening * ring.tangent).normalized()),
                                {float(ring.radius * c), float(ring.radius * s), float(ring.along)},
                                color});
     }

@@ -1,19 +1,18 @@
 // DrawTube -> a closed, tapered, round-tipped triangle mesh.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "runtime/picture/draw_scene.h"
+#include "runtime/picture/glm_types.h"
 
 namespace liana {
 
 struct TubeVertex {
-  std::array<float, 3> position;  ///< m
-  std::array<float, 3> normal;    ///< unit, outwards
-  std::array<float, 3>
-      bark;  ///< m: (r cos φ, r sin φ, distance along the tube), where the bark pattern lives
-  std::array<uint8_t, 4> color;  ///< packed_color()
+  glm::vec3 position;  ///< m
+  glm::vec3 normal;    ///< unit, outwards
+  glm::vec3 bark;      ///< m: (r cos φ, r sin φ, distance along the tube), where the bark pattern lives
+  glm::u8vec4 color;   ///< packed_color()
 };
 
 struct TubeMesh {

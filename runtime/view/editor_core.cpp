@@ -2,27 +2,12 @@
 
 #include <algorithm>
 
+#include "runtime/sim/model/grab_spring.h"
+
 namespace liana {
 namespace {
 
-constexpr double kGravity = 9.81;             // m/s²
-constexpr double kStretchUnderWeight = 0.02;  // m: a grab that held the whole plant would stretch by this
-constexpr double kRestBeforeFine = 0.25;      // s
-
-/// A spring strong enough to lift the plant it pulls at, damped over two steps so that the mouse's jerks are
-/// not felt.
-WorldSpring grab_spring(const Plant& plant, const Pick& pick, double time_step) {
-  double mass = 0;
-  for (const Particle& particle : plant.particles) mass += particle.mass;
-  const double stiffness = mass * kGravity / kStretchUnderWeight;
-  WorldSpring spring;
-  spring.particle = pick.particle;
-  spring.on_particle = pick.on_particle;
-  spring.target = pick.point;
-  spring.stiffness = stiffness * Mat3::Identity();
-  spring.damping = 2 * time_step * stiffness * Mat3::Identity();
-  return spring;
-}
+constexpr double kRestBeforeFine = 0.25;  // s
 
 }  // namespace
 
@@ -108,7 +93,8 @@ void EditorCore::on(const ResizeEvent& event) {
 bool EditorCore::try_grab(double x, double y) {
   grab_ = pick_particle(simulation_, scene().meshes, camera_, x, y, width_, height_);
   if (!grab_) return false;
-  spring_ = grab_spring(simulation_.plant(grab_->plant), *grab_, simulation_.time_step());
+  spring_ = grab_spring(simulation_.plant(grab_->plant), grab_->particle, grab_->on_particle,
+                        simulation_.gravity(), simulation_.time_step());
   simulation_.set_grab(grab_->plant, spring_);
   return true;
 }

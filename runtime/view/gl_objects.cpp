@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <glm/gtc/type_ptr.hpp>
 #include <stdexcept>
 
 #include "mesher/base/error.h"
@@ -117,14 +118,14 @@ void ShaderProgram::set(const char* name, int value) {
 void ShaderProgram::set(const char* name, float value) {
   glUniform1f(location(name), value);
 }
-void ShaderProgram::set(const char* name, const Eigen::Vector2f& value) {
-  glUniform2fv(location(name), 1, value.data());
+void ShaderProgram::set(const char* name, const glm::vec2& value) {
+  glUniform2fv(location(name), 1, glm::value_ptr(value));
 }
-void ShaderProgram::set(const char* name, const Eigen::Vector3f& value) {
-  glUniform3fv(location(name), 1, value.data());
+void ShaderProgram::set(const char* name, const glm::vec3& value) {
+  glUniform3fv(location(name), 1, glm::value_ptr(value));
 }
-void ShaderProgram::set(const char* name, const Eigen::Matrix4f& value) {
-  glUniformMatrix4fv(location(name), 1, GL_FALSE, value.data());
+void ShaderProgram::set(const char* name, const glm::mat4& value) {
+  glUniformMatrix4fv(location(name), 1, GL_FALSE, glm::value_ptr(value));
 }
 
 }  // namespace liana

@@ -1,7 +1,9 @@
 // Owners of OpenGL objects. All need the context that was current at their making to be current.
 #pragma once
 
-#include <Eigen/Dense>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <map>
 #include <string>
 #include <utility>
@@ -42,9 +44,9 @@ class ShaderProgram {
   // The program must be in use. A name that the compiler optimised away is ignored.
   void set(const char* name, int value);
   void set(const char* name, float value);
-  void set(const char* name, const Eigen::Vector2f& value);
-  void set(const char* name, const Eigen::Vector3f& value);
-  void set(const char* name, const Eigen::Matrix4f& value);
+  void set(const char* name, const glm::vec2& value);
+  void set(const char* name, const glm::vec3& value);
+  void set(const char* name, const glm::mat4& value);
 
  private:
   int location(const char* name);

@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 
 #include "mesher/base/error.h"
+#include "runtime/picture/glm_types.h"
 #include "runtime/picture/leaf_mesh.h"
 
 namespace liana {
@@ -19,9 +20,9 @@ const FrameTarget& fitting(std::unique_ptr<FrameTarget>& kept, int width, int he
 void set_rays(ShaderProgram& program, const Camera& camera, int width, int height) {
   const double pixel = camera.pixel_size(1, height);
   const Vec3 corner = camera.forward() - pixel * (width / 2.0 * camera.right() + height / 2.0 * camera.up());
-  program.set("ray_corner", corner.cast<float>().eval());
-  program.set("ray_right", (pixel * camera.right()).cast<float>().eval());
-  program.set("ray_up", (pixel * camera.up()).cast<float>().eval());
+  program.set("ray_corner", to_glm_float(corner));
+  program.set("ray_right", to_glm_float(pixel * camera.right()));
+  program.set("ray_up", to_glm_float(pixel * camera.up()));
 }
 
 }  // namespace
@@ -55,15 +56,14 @@ void Renderer::draw(const Camera& camera, const FrameOptions& options) {
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, shadow_->texture());
-  const Eigen::Matrix4f view_projection =
-      camera.projection(double(options.width) / options.height) * camera.view();
+  const glm::mat4 view_projection = camera.projection(double(options.width) / options.height) * camera.view();
   const double texel = sun.extent / options.shadow_size;
   for (ShaderProgram* program : {&tube_, &leaf_, &mesh_, &ground_, &sky_, &streak_}) {
     program->use();
     program->set("view_projection", view_projection);
     program->set("light_matrix", sun.to_texture);
-    program->set("eye", camera.eye().cast<float>().eval());
-    program->set("to_sun", buffers_.to_sun().cast<float>().eval());
+    program->set("eye", to_glm_float(camera.eye()));
+    program->set("to_sun", to_glm_float(buffers_.to_sun()));
     program->set("shadow_texel", float(texel));
     // Half a pixel at least, so that the filter always blurs the map's own grid.
     program->set("shadow_softness", float(std::max(0.5, options.shadow_softness / texel / 2)));
@@ -127,7 +127,7 @@ void Renderer::draw_surroundings(const Camera& camera, const FrameOptions& optio
 
 void Renderer::draw_streaks(const FrameOptions& options) {
   streak_.use();
-  streak_.set("half_pixel", Eigen::Vector2f(1.0f / float(options.width), 1.0f / float(options.height)));
+  streak_.set("half_pixel", glm::vec2(1.0f / float(options.width), 1.0f / float(options.height)));
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
   glDepthMask(GL_FALSE);
@@ -144,12 +144,12 @@ void Renderer::draw_occlusion(const Camera& camera, const FrameOptions& options)
   glBindTexture(GL_TEXTURE_2D, target_->color());
   glActiveTexture(GL_TEXTURE1);
   glBindTexture(GL_TEXTURE_2D, target_->depth());
-  const Eigen::Matrix4f projection = camera.projection(double(options.width) / options.height);
+  const glm::mat4 projection = camera.projection(double(options.width) / options.height);
   occlusion_.use();
   occlusion_.set("color_picture", 0);
   occlusion_.set("depth_picture", 1);
-  occlusion_.set("slopes", Eigen::Vector2f(1 / projection(0, 0), 1 / projection(1, 1)));
-  occlusion_.set("depth_terms", Eigen::Vector2f(projection(2, 2), projection(2, 3)));
+  occlusion_.set("slopes", glm::vec2(1 / projection[0][0], 1 / projection[1][1]));
+  occlusion_.set("depth_terms", glm::vec2(projection[2][2], projection[3][2]));
   occlusion_.set("reach", float(0.035 * camera.distance));
   glBindVertexArray(no_vertices_.id());
   glDrawArrays(GL_TRIANGLES, 0, 3);

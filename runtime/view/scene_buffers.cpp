@@ -2,34 +2,27 @@
 
 #include <epoxy/gl.h>
 
-#include <algorithm>
-
 #include "runtime/picture/leaf_mesh.h"
-#include "runtime/picture/pack.h"
 #include "runtime/picture/smooth_normals.h"
 
 namespace liana {
 namespace {
 
 struct LeafInstance {
-  std::array<float, 3> base;
-  std::array<float, 4> orientation;  // x y z w
-  std::array<float, 3> size;         // length, width, curl
-  std::array<uint8_t, 4> color;
+  glm::vec3 base;
+  glm::vec4 orientation;  // x y z w
+  glm::vec3 size;         // length, width, curl
+  glm::u8vec4 color;
 };
 
 struct StreakInstance {
-  std::array<float, 3> from, to;
-  std::array<uint8_t, 4> color;
+  glm::vec3 from, to;
+  glm::u8vec4 color;
 };
 
 struct MeshVertex {
-  std::array<float, 3> position, normal;
+  glm::vec3 position, normal;
 };
-
-std::array<float, 3> floats(const Vec3& v) {
-  return {float(v.x()), float(v.y()), float(v.z())};
-}
 
 template <class T>
 void fill(GLenum target, const GlObject& buffer, const std::vector<T>& values) {
@@ -61,7 +54,7 @@ SceneBuffers::SceneBuffers() {
     const LeafShape& shape = leaf_shape(LeafOutline(outline));
     glBindVertexArray(leaves.array.id());
     fill(GL_ARRAY_BUFFER, leaves.shape, shape.points);
-    attribute(0, 2, sizeof(Eigen::Vector2f), 0);
+    attribute(0, 2, sizeof(glm::vec2), 0);
     fill(GL_ELEMENT_ARRAY_BUFFER, leaves.indices, shape.triangles);
     leaves.index_count = int(3 * shape.triangles.size());
     glBindBuffer(GL_ARRAY_BUFFER, leaves.instances.id());
@@ -98,23 +91,19 @@ void SceneBuffers::upload(const DrawScene& scene, int tube_sides) {
   tube_index_count_ = int(3 * tube_mesh_.triangles.size());
 
   std::vector<LeafInstance> instances[kLeafOutlineCount];
-  for (const DrawLeaf& leaf : scene.leaves) {
-    const Quat& q = leaf.orientation;
-    instances[int(leaf.outline)].push_back({floats(leaf.base),
-                                            {float(q.x()), float(q.y()), float(q.z()), float(q.w())},
-                                            {float(leaf.length), float(leaf.width), float(leaf.curl)},
+  for (const DrawLeaf& leaf : scene.leaves)
+    instances[int(leaf.outline)].push_back({to_glm_float(leaf.base), to_glm_float(leaf.orientation),
+                                            glm::vec3(leaf.length, leaf.width, leaf.curl),
                                             packed_color(leaf.color)});
-  }
   for (int outline = 0; outline < kLeafOutlineCount; ++outline) {
     fill(GL_ARRAY_BUFFER, leaves_[outline].instances, instances[outline]);
     leaves_[outline].instance_count = int(instances[outline].size());
   }
 
   std::vector<StreakInstance> streaks;
-  for (const DrawStreak& streak : scene.streaks) {
-    streaks.push_back({floats(streak.from), floats(streak.to), packed_color(streak.color)});
-    streaks.back().color[3] = static_cast<uint8_t>(255 * std::clamp(streak.opacity, 0.0, 1.0));
-  }
+  for (const DrawStreak& streak : scene.streaks)
+    streaks.push_back(
+        {to_glm_float(streak.from), to_glm_float(streak.to), packed_color(streak.color, streak.opacity)});
   fill(GL_ARRAY_BUFFER, streak_instances_, streaks);
   streak_count_ = int(streaks.size());
 
@@ -123,10 +112,10 @@ void SceneBuffers::upload(const DrawScene& scene, int tube_sides) {
   for (const DrawMesh& mesh : scene.meshes) {
     const std::vector<Vec3> normals = corner_normals(mesh.mesh);
     mesh_ranges_.push_back(
-        {int(vertices.size()), int(normals.size()), mesh.color.cast<float>(), mesh.bricks});
+        {int(vertices.size()), int(normals.size()), to_glm_float(mesh.color), mesh.bricks});
     for (size_t corner = 0; corner < normals.size(); ++corner)
-      vertices.push_back({floats(mesh.mesh.positions[mesh.mesh.triangles[corner / 3][corner % 3]]),
-                          floats(normals[corner])});
+      vertices.push_back({to_glm_float(mesh.mesh.positions[mesh.mesh.triangles[corner / 3][corner % 3]]),
+                          to_glm_float(normals[corner])});
   }
   fill(GL_ARRAY_BUFFER, mesh_vertices_, vertices);
 }

@@ -14,7 +14,7 @@ class SceneBuffers {
 
   struct MeshRange {
     int first, count;  ///< vertices
-    Eigen::Vector3f color;
+    glm::vec3 color;
     bool bricks;
   };
 

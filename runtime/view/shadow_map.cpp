@@ -2,33 +2,31 @@
 
 #include <epoxy/gl.h>
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include "mesher/base/error.h"
+#include "runtime/picture/glm_types.h"
 
 namespace liana {
 
 SunView sun_view(const BoundingBox& given, const Vec3& to_sun) {
   BoundingBox box = given;
   if (box.empty()) box.add(Vec3::Zero(), 1);
-  const Vec3 back = to_sun.normalized(), side = back.unitOrthogonal(), up = back.cross(side);
-  Mat3 rotation;
-  rotation << side.transpose(), up.transpose(), back.transpose();
-  BoundingBox turned;
-  for (int corner = 0; corner < 8; ++corner)
-    turned.add(
-        rotation * Vec3(corner & 1 ? box.high.x() : box.low.x(), corner & 2 ? box.high.y() : box.low.y(),
-                        corner & 4 ? box.high.z() : box.low.z()),
-        0.02);
+  constexpr double kMargin = 0.02;  // m
+  const Vec3 back = to_sun.normalized(), up = back.cross(back.unitOrthogonal());
+  const glm::dmat4 view = glm::lookAt(to_glm(back), glm::dvec3(0), to_glm(up));
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 seen =
+        view * glm::dvec4(corner & 1 ? box.high.x() : box.low.x(), corner & 2 ? box.high.y() : box.low.y(),
+                          corner & 4 ? box.high.z() : box.low.z(), 1);
+    low = glm::min(low, seen - kMargin), high = glm::max(high, seen + kMargin);
+  }
   // The ground below the box receives its shadow: reach as far down the rays as y = 0.
-  turned.low.z() -= std::max(0.0, box.high.y()) / std::max(0.05, back.y());
-  const Vec3 half = (turned.high - turned.low) / 2, middle = (turned.high + turned.low) / 2;
-  Eigen::Matrix4d to_clip = Eigen::Matrix4d::Identity();
-  const Vec3 scale(1 / half.x(), 1 / half.y(), -1 / half.z());  // nearer the sun = smaller depth
-  to_clip.topLeftCorner<3, 3>() = scale.asDiagonal() * rotation;
-  to_clip.topRightCorner<3, 1>() = -scale.cwiseProduct(middle);
-  Eigen::Matrix4d to_texture = Eigen::Matrix4d::Identity();
-  to_texture.topLeftCorner<3, 3>() *= 0.5;
-  to_texture.topRightCorner<3, 1>().setConstant(0.5);
-  return {to_clip.cast<float>(), (to_texture * to_clip).cast<float>(), 2 * std::max(half.x(), half.y())};
+  low.z -= std::max(0.0, box.high.y()) / std::max(0.05, back.y());
+  const glm::dmat4 to_clip = glm::ortho(low.x, high.x, low.y, high.y, -high.z, -low.z) * view;
+  const glm::dmat4 to_unit = glm::scale(glm::translate(glm::dmat4(1), glm::dvec3(0.5)), glm::dvec3(0.5));
+  return {glm::mat4(to_clip), glm::mat4(to_unit * to_clip), std::max(high.x - low.x, high.y - low.y)};
 }
 
 ShadowMap::ShadowMap(int size) : size_(size) {

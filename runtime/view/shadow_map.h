@@ -8,9 +8,9 @@ namespace liana {
 
 /// The sun's orthographic view of a box.
 struct SunView {
-  Eigen::Matrix4f to_clip;     ///< world -> the sun's clip space
-  Eigen::Matrix4f to_texture;  ///< world -> [0, 1]
-  double extent;               ///< m, of the longer side that the map covers
+  glm::mat4 to_clip;     ///< world -> the sun's clip space
+  glm::mat4 to_texture;  ///< world -> [0, 1]
+  double extent;         ///< m, of the longer side that the map covers
 };
 
 /// Encloses the box; to_sun need not be a unit vector.

@@ -12,9 +12,6 @@
 namespace liana {
 namespace {
 
-constexpr double kStretchUnderWeight = 0.02;  // m: of a grab that holds the whole plant
-constexpr double kEarth = 9.81;               // m/s²: where nothing weighs, a grab is as strong as on earth
-
 bool names(const std::string& text, const std::vector<std::string>& domains, size_t index) {
   return text == domains[index] || text == "#" + std::to_string(index);
 }
@@ -88,17 +85,6 @@ std::optional<PlantPoint> Script::find(const ScenePoint& point, const Garden& ga
   }
   if (!best.valid()) return std::nullopt;
   return PlantPoint{index, best};
-}
-
-WorldSpring Script::spring_of(const SceneGrab& grab, const Plant& plant, ParticleId particle) const {
-  double mass = 0;
-  for (const Particle& one : plant.particles) mass += one.mass;
-  const double gravity = scene_.gravity.norm(), weight = (gravity > 0 ? gravity : kEarth) * mass;
-  WorldSpring spring;
-  spring.particle = particle;
-  spring.stiffness = grab.strength * weight / kStretchUnderWeight * Mat3::Identity();
-  spring.damping = 2 * scene_.time_step * spring.stiffness;
-  return spring;
 }
 
 void Script::strike(size_t number, Plant& plant, size_t step) const {

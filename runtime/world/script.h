@@ -25,8 +25,6 @@ class Script {
   bool is_now(double time, size_t step) const;
   /// Where a place of the scene is now; nothing when nothing of it is left.
   std::optional<PlantPoint> find(const ScenePoint& point, const Garden& garden) const;
-  /// The spring of a grab of the scene that begins at a place.
-  WorldSpring spring_of(const SceneGrab& grab, const Plant& plant, ParticleId particle) const;
   /// Strikes what is to be struck of a plant before this step.
   void strike(size_t number, Plant& plant, size_t step) const;
 

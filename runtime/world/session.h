@@ -23,6 +23,7 @@ class SessionRecorder final : public Simulation {
   void cut(size_t plant, ParticleId particle) override;
 
   double time_step() const override { return world_.time_step(); }
+  Vec3 gravity() const override { return world_.gravity(); }
   void draw(DrawScene& scene) const override { world_.draw(scene); }
   size_t plant_count() const override { return world_.plant_count(); }
   const Plant& plant(size_t index) const override { return world_.plant(index); }

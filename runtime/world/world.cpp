@@ -6,6 +6,7 @@
 #include "mesher/base/hash.h"
 #include "mesher/base/parallel.h"
 #include "mesher/base/stopwatch.h"
+#include "runtime/sim/model/grab_spring.h"
 #include "runtime/sim/model/state_hash.h"
 #include "runtime/world/world_drawing.h"
 
@@ -77,10 +78,9 @@ void World::begin_acts() {
     begin(entry.time, entry.where, "cut", [&](const PlantPoint& point) { cut(point.plant, point.particle); });
   for (const SceneGrab& entry : scene_.grabs)
     begin(entry.time, entry.where, "grab", [&](const PlantPoint& point) {
-      const Plant& plant = garden_[point.plant].plant;
-      grabs_.begin(static_cast<size_t>(&entry - scene_.grabs.data()), point.plant,
-                   script_.spring_of(entry, plant, point.particle),
-                   plant.motion[point.particle.index()].position);
+      const WorldSpring spring = grab_spring(garden_[point.plant].plant, point.particle, Vec3::Zero(),
+                                             scene_.gravity, scene_.time_step, entry.strength);
+      grabs_.begin(static_cast<size_t>(&entry - scene_.grabs.data()), point.plant, spring, spring.target);
     });
 }
 

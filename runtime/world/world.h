@@ -30,6 +30,7 @@ class World final : public Simulation {
 
   void step() override;
   double time_step() const override { return scene_.time_step; }
+  Vec3 gravity() const override { return scene_.gravity; }
   void draw(DrawScene& scene) const override;
   size_t plant_count() const override { return garden_.size(); }
   const Plant& plant(size_t i) const override { return garden_[i].plant; }

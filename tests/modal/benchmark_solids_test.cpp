@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "mesher/tets/tetrahedralize.h"
-#include "modal/solve/subspace_iteration.h"
+#include "modal/solve/eigenpairs.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/solids/block_tets.h"
 

@@ -18,8 +18,8 @@
 #include "mesher/solids/solidify/solid_domain.h"
 #include "mesher/tets/tetrahedralize.h"
 #include "modal/elements/element_matrices.h"
+#include "modal/solve/eigenpairs.h"
 #include "modal/solve/lowest_mode.h"
-#include "modal/solve/subspace_iteration.h"
 #include "tests/support/solids/block_tets.h"
 #include "tests/support/solids/shapes.h"
 

@@ -12,7 +12,7 @@
 
 #include "mesher/base/error.h"
 #include "mesher/tets/tetrahedralize.h"
-#include "modal/solve/subspace_iteration.h"
+#include "modal/solve/eigenpairs.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/solids/other_solvers.h"
 #include "tests/support/solids/shapes.h"

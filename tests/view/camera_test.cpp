@@ -57,11 +57,11 @@ TEST(Camera, RayOfAPixelMeetsThePointProjectedThere) {
 TEST(Camera, MatricesAgreeWithProject) {
   const Camera camera = slanted();
   const Vec3 point(0.9, 0.4, 0.1), pixel = camera.project(point, kWidth, kHeight);
-  const Eigen::Vector4f clip =
-      camera.projection(double(kWidth) / kHeight) * camera.view() * point.cast<float>().homogeneous();
+  const glm::vec4 clip = camera.projection(double(kWidth) / kHeight) * camera.view() *
+                         glm::vec4(point.x(), point.y(), point.z(), 1);
   // Single precision: 1e-6 of the picture's width.
-  EXPECT_NEAR((clip.x() / clip.w() + 1) / 2 * kWidth, pixel.x(), 1e-2);
-  EXPECT_NEAR((1 - clip.y() / clip.w()) / 2 * kHeight, pixel.y(), 1e-2);
+  EXPECT_NEAR((clip.x / clip.w + 1) / 2 * kWidth, pixel.x(), 1e-2);
+  EXPECT_NEAR((1 - clip.y / clip.w) / 2 * kHeight, pixel.y(), 1e-2);
 }
 
 TEST(Camera, FrameShowsEveryCornerAndFillsThePicture) {

@@ -70,6 +70,22 @@ TEST_F(Editor, DraggingABranchMovesItToTheMouseAndReleases) {
   EXPECT_FALSE(core.grab());
 }
 
+// Its own weight stretches a grab by 2 cm, whatever the world's gravity; without any it still pulls.
+TEST_F(Editor, AGrabIsAsStrongAsTheWorldsGravity) {
+  double mass = 0;
+  for (const Particle& particle : world.plant(0).particles) mass += particle.mass;
+  const Vec3 pixel = pixel_of(world.plant(0).motion[9].position);
+  for (const double gravity : {9.81, 1.62, 0.0}) {
+    world.world_gravity = {0, -gravity, 0};
+    press(pixel);
+    ASSERT_TRUE(world.grab());
+    const double weight = (gravity > 0 ? gravity : 9.81) * mass;
+    EXPECT_NEAR(world.grab()->stiffness(1, 1), weight / 0.02, 1e-9 * weight);
+    EXPECT_NEAR(world.grab()->damping(1, 1), 2 * world.time_step() * weight / 0.02, 1e-9 * weight);
+    release(pixel);
+  }
+}
+
 TEST_F(Editor, DraggingEmptySpaceOrbitsAndLeavesTheWorldAlone) {
   const Camera before = core.camera();
   press({60, 60, 0});

@@ -12,7 +12,7 @@
 namespace liana {
 namespace {
 
-Vec3 at(const std::array<float, 3>& v) {
+Vec3 at(const glm::vec3& v) {
   return {v[0], v[1], v[2]};
 }
 
@@ -110,15 +110,15 @@ TEST(LeafMesh, OutlinesFaceUpFillTheirUnitAndAreSymmetric) {
   for (const LeafOutline outline : {LeafOutline::Ivy, LeafOutline::Ovate}) {
     const LeafShape& shape = leaf_shape(outline);
     double area = 0, widest = 0, longest = 0, lopsided = 0;
-    for (const Eigen::Vector2f& p : shape.points) {
-      widest = std::max(widest, double(p.x()));
-      longest = std::max(longest, double(p.y()));
-      lopsided += p.x();
+    for (const glm::vec2& p : shape.points) {
+      widest = std::max(widest, double(p.x));
+      longest = std::max(longest, double(p.y));
+      lopsided += p.x;
     }
     for (const Triangle& t : shape.triangles) {
-      const Eigen::Vector2f u = shape.points[t[1]] - shape.points[t[0]],
-                            v = shape.points[t[2]] - shape.points[t[0]];
-      const double twice = double(u.x()) * v.y() - double(u.y()) * v.x();
+      const glm::dvec2 u = shape.points[t[1]] - shape.points[t[0]],
+                       v = shape.points[t[2]] - shape.points[t[0]];
+      const double twice = u.x * v.y - u.y * v.x;
       EXPECT_GT(twice, 0);  // no overlap, faces +Z
       area += twice / 2;
     }

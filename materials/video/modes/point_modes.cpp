@@ -94,14 +94,18 @@ std::vector<double> peak_frequencies(std::span<const double> signal, double dt, 
   return frequencies;
 }
 
-}  // namespace
+/// The motion of a stretch above the slowest frequency asked for.
+struct Swing {
+  Stretch part;
+  std::vector<Vec2> fast;  // without drift
+  MainDirection main;
+};
 
-PointModes point_modes(const PointTracks& tracks, const PointTrack& track, const MotionOptions& options) {
-  const double fps = tracks.frames_per_second, dt = 1 / fps;
-  Stretch part = usable_part(tracks, track, options);
-  PointModes result;
-  result.point = track.name;
-  result.lowest = options.low > 0 ? options.low : kSwings / (static_cast<double>(part.path.size()) * dt);
+/// The band that was asked for, as far as the record can tell it.
+void choose_band(const PointTracks& tracks, const PointTrack& track, const MotionOptions& options,
+                 size_t frames, PointModes& result) {
+  const double fps = tracks.frames_per_second;
+  result.lowest = options.low > 0 ? options.low : kSwings / (static_cast<double>(frames) * (1 / fps));
   result.highest = options.high > 0 ? std::min(options.high, 0.5 * fps) : 0.4 * fps;
   if (result.lowest >= result.highest)
     fail(
@@ -110,54 +114,89 @@ PointModes point_modes(const PointTracks& tracks, const PointTrack& track, const
             "is filmed at {} frames per second: only up to {} Hz can be told, from {:.2f} Hz on it was asked",
             fps, result.highest, result.lowest),
         "film with more frames per second, or longer");
+}
 
-  const std::vector<Vec2> fast = without_drift(part.path, fps, result.lowest);
-  MainDirection main = main_direction(fast);
+Swing swing_of(const PointTracks& tracks, const PointTrack& track, Stretch part, double lowest) {
+  Swing swing{std::move(part), {}, {}};
+  swing.fast = without_drift(swing.part.path, tracks.frames_per_second, lowest);
+  swing.main = main_direction(swing.fast);
+  const std::vector<double>& signal = swing.main.signal;
   double variance = 0;
-  for (const double value : main.signal) variance += value * value / static_cast<double>(main.signal.size());
+  for (const double value : signal) variance += value * value / static_cast<double>(signal.size());
   if (std::sqrt(variance) < kStill)
     fail(tracks, track,
-         fmt::format("does not move: {:.3f} pixels rms above {:.2f} Hz", std::sqrt(variance), result.lowest),
+         fmt::format("does not move: {:.3f} pixels rms above {:.2f} Hz", std::sqrt(variance), lowest),
          "choose a point that swings, film closer, or check that the plant moves at all");
+  return swing;
+}
 
-  DecayFit decay;
-  size_t start = 0;
-  if (options.excitation != Excitation::Wind) {
-    start = start_of_decay(main.signal);
-    const bool enough = main.signal.size() - start >= kFewestFrames &&
-                        static_cast<double>(main.signal.size() - start) * dt * result.lowest >= kSwings / 2;
-    if (enough) {
-      const std::vector<Vec2> rest(part.path.begin() + static_cast<std::ptrdiff_t>(start), part.path.end());
-      const std::vector<Vec2> rest_fast(fast.begin() + static_cast<std::ptrdiff_t>(start), fast.end());
-      const Vec2 direction = main_direction(rest_fast).direction;
-      decay = fit_decay(projected(rest, direction), dt, {result.lowest, result.highest});
-    } else if (options.excitation == Excitation::FreeDecay) {
+/// The motion from `start` on as a free decay; no modes where too little of it is left and that is not what
+/// was asked for.
+DecayFit decay_from(const PointTracks& tracks, const PointTrack& track, const Swing& swing, size_t start,
+                    Excitation asked, const PointModes& band) {
+  const double dt = 1 / tracks.frames_per_second;
+  const size_t left = swing.main.signal.size() - start;
+  if (left < kFewestFrames || static_cast<double>(left) * dt * band.lowest < kSwings / 2) {
+    if (asked == Excitation::FreeDecay)
       fail(tracks, track, "is deflected most at the end of the record: nothing of its decay is left",
            "give the seconds in which it swings freely: --from and --to");
-    }
+    return {};
   }
+  const auto from = static_cast<std::ptrdiff_t>(start);
+  const std::vector<Vec2> rest(swing.part.path.begin() + from, swing.part.path.end());
+  const std::vector<Vec2> rest_fast(swing.fast.begin() + from, swing.fast.end());
+  const Vec2 direction = main_direction(rest_fast).direction;
+  return fit_decay(projected(rest, direction), dt, {band.lowest, band.highest});
+}
+
+std::vector<MeasuredMode> gust_modes(const Swing& swing, double dt, const PointModes& band) {
+  const std::vector<double> signal = projected(swing.part.path, swing.main.direction);
+  std::vector<MeasuredMode> modes =
+      fit_gusts(signal, dt, peak_frequencies(signal, dt, band.lowest, band.highest), band.lowest / kSwings,
+                band.highest)
+          .modes;
+  std::erase_if(modes, [&](const MeasuredMode& m) { return m.frequency < band.lowest; });
+  return modes;
+}
+
+/// What of the record was used, and what it looks like.
+void describe(const Swing& swing, double fps, PointModes& result) {
+  result.first_frame = swing.part.first;
+  result.frames = swing.part.path.size();
+  result.bridged = swing.part.bridged;
+  result.direction = swing.main.direction;
+  result.direction_share = swing.main.share;
+  result.resolution = fps / static_cast<double>(swing.part.path.size());
+  result.spectrum = power_spectrum(swing.main.signal, 1 / fps, Window::Hann);
+}
+
+}  // namespace
+
+PointModes point_modes(const PointTracks& tracks, const PointTrack& track, const MotionOptions& options) {
+  const double fps = tracks.frames_per_second;
+  PointModes result;
+  result.point = track.name;
+  Stretch part = usable_part(tracks, track, options);
+  choose_band(tracks, track, options, part.path.size(), result);
+  Swing swing = swing_of(tracks, track, std::move(part), result.lowest);
+
+  const bool may_decay = options.excitation != Excitation::Wind;
+  const size_t start = may_decay ? start_of_decay(swing.main.signal) : 0;
+  const DecayFit decay =
+      may_decay ? decay_from(tracks, track, swing, start, options.excitation, result) : DecayFit{};
   result.explained = decay.explained;
-  if (options.excitation == Excitation::FreeDecay || is_decay(decay, main.signal, start)) {
+  if (options.excitation == Excitation::FreeDecay || is_decay(decay, swing.main.signal, start)) {
     result.excitation = Excitation::FreeDecay;
     result.modes = decay.modes;
-    part.path.erase(part.path.begin(), part.path.begin() + static_cast<std::ptrdiff_t>(start));
-    part.first += start;
-    main = main_direction(without_drift(part.path, fps, result.lowest));
+    swing.part.path.erase(swing.part.path.begin(),
+                          swing.part.path.begin() + static_cast<std::ptrdiff_t>(start));
+    swing.part.first += start;
+    swing.main = main_direction(without_drift(swing.part.path, fps, result.lowest));
   } else {
     result.excitation = Excitation::Wind;
-    const std::vector<double> signal = projected(part.path, main.direction);
-    result.modes = fit_gusts(signal, dt, peak_frequencies(signal, dt, result.lowest, result.highest),
-                             result.lowest / kSwings, result.highest)
-                       .modes;
-    std::erase_if(result.modes, [&](const MeasuredMode& m) { return m.frequency < result.lowest; });
+    result.modes = gust_modes(swing, 1 / fps, result);
   }
-  result.first_frame = part.first;
-  result.frames = part.path.size();
-  result.bridged = part.bridged;
-  result.direction = main.direction;
-  result.direction_share = main.share;
-  result.resolution = fps / static_cast<double>(part.path.size());
-  result.spectrum = power_spectrum(main.signal, dt, Window::Hann);
+  describe(swing, fps, result);
   if (result.modes.empty())
     fail(tracks, track,
          fmt::format("shows no frequency between {:.2f} and {:.2f} Hz that stands out", result.lowest,

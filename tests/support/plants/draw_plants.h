@@ -69,6 +69,7 @@ class FakeSimulation : public Simulation {
     motion.position += 0.5 * (grab_->target - held);
   }
   double time_step() const override { return 0.025; }
+  Vec3 gravity() const override { return world_gravity; }
   void draw(DrawScene& scene) const override {
     scene = backdrop;
     add_plant(plant_, {}, {}, scene);
@@ -83,8 +84,9 @@ class FakeSimulation : public Simulation {
   }
 
   const std::optional<WorldSpring>& grab() const { return grab_; }
-  DrawScene backdrop;            ///< drawn behind the plant
-  std::vector<ParticleId> cuts;  ///< asked for so far
+  Vec3 world_gravity = {0, -9.81, 0};  ///< m/s²
+  DrawScene backdrop;                  ///< drawn behind the plant
+  std::vector<ParticleId> cuts;        ///< asked for so far
 
  private:
   Plant plant_;

@@ -1,4 +1,4 @@
-// The lowest eigenpairs of K x = λ M x by inverse iteration of a few vectors at once with Rayleigh-Ritz.
+// The lowest eigenpairs of K x = λ M x: a few by inverse iteration, many by Lanczos.
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 namespace liana {
 
 struct EigenOptions {
-  int modes = 2;
+  int modes = 2;            ///< at most half of the free dof are given: beyond, they are the mesh's own
   double shift = 0;         ///< σ > 0, dimensionless: factor K + σ M, for bodies that can move rigidly
   double tolerance = 3e-5;  ///< on the residual; the eigenvalue's relative error is about its square
   int max_iterations = 100;
@@ -25,14 +25,14 @@ struct EigenResult {
   Mat3 sway_directions = Mat3::Identity();
   uint32_t dof = 0;
   int iterations = 0;
-  /// Max over modes of how far x is from an eigenvector, by the M-norm: |λ K⁻¹ M x − x| of the last x but one
-  /// times the contraction of that measure in the last step.
+  /// Max over modes of how far x is from an eigenvector, by the M-norm: |λ K⁻¹ M x − x|. Of the inverse
+  /// iteration that of the last x but one times the contraction of that measure in the last step.
   double residual = 0;
   bool converged = false;
 };
 
-/// held: per dof (3 a node), 1 if it is fixed at zero. Throws Error{Input} when K + σ M is not positive
-/// definite.
+/// held: per dof (3 a node), 1 if it is fixed at zero. Up to two modes by inverse_iteration(), more by
+/// lanczos(). Throws Error{Input} when K + σ M is not positive definite.
 EigenResult lowest_eigenpairs(const System& system, std::span<const uint8_t> held,
                               const EigenOptions& options);
 
