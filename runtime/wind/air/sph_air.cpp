@@ -1,11 +1,11 @@
 #include "runtime/wind/air/sph_air.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <utility>
 
 #include "mesher/base/error.h"
+#include "mesher/base/parallel.h"
 #include "runtime/wind/air/sph_kernels.h"
 
 namespace liana {
@@ -34,8 +34,9 @@ SphAir::SphAir(const AirOptions& o, const AirWalls* walls, const MovingWalls* mo
     : options_(o),
       walls_(walls && !walls->empty() ? walls : nullptr),
       moving_(moving && !moving->empty() ? moving : nullptr),
-      passes_(sph_passes(o.portable)),
-      team_(o.threads) {
+      passes_(sph_passes(o.portable)) {
+  options_.threads = o.threads > 0 ? o.threads : default_thread_count();
+  start_threads(options_.threads);
   const Vec3 extent = o.high - o.low;
   const bool sound = extent.allFinite() && extent.minCoeff() > 0 && o.spacing > 0 && o.rest_density > 0 &&
                      o.sound_speed > 0 && o.viscosity >= 0 && o.capacity > 0 && o.capacity < (1u << 30) &&
@@ -70,7 +71,7 @@ SphAir::SphAir(const AirOptions& o, const AirWalls* walls, const MovingWalls* mo
   wall_.resize(padded), key_.resize(padded), list_begin_.resize(padded), list_end_.resize(padded);
   cell_begin_.resize(static_cast<size_t>(number) + 2);
   cell_near_wall_.resize(static_cast<size_t>(number));
-  chunks_.resize(kTasksPerWorker * team_.size());
+  chunks_.resize(kTasksPerWorker * options_.threads);
   for (Chunk& chunk : chunks_) {
     chunk.list.resize(64 * n / chunks_.size() + 65536);
     for (auto* values : {&chunk.x, &chunk.y, &chunk.z}) values->resize(padded);
@@ -171,22 +172,11 @@ void SphAir::step(double dt, std::span<AirBody> bodies) {
   if (count_ == 0) return;
   find_body_pairs(bodies);
   if (moving_) mark_cells_near_moving();
-  struct Work {
-    double dt;
-    std::span<AirBody> bodies;
-    void (SphAir::*move)(Chunk&, float);
-    std::atomic<size_t> next_density = 0, next_move = 0;
-  } work{dt, bodies, moving_ ? &SphAir::move<true> : &SphAir::move<false>};
-  team_.run([this, &work](unsigned worker) {
-    for (size_t c; (c = work.next_density.fetch_add(1)) < chunks_.size();) densities(chunks_[c]);
-    team_.wait();
-    if (!body_pairs_.empty()) {
-      if (worker == 0) push_bodies(work.bodies, work.dt);
-      team_.wait();
-    }
-    for (size_t c; (c = work.next_move.fetch_add(1)) < chunks_.size();)
-      (this->*work.move)(chunks_[c], static_cast<float>(work.dt));
-  });
+  parallel_for(chunks_.size(), options_.threads, [&](size_t c, unsigned) { densities(chunks_[c]); });
+  if (!body_pairs_.empty()) push_bodies(bodies, dt);
+  const auto move = moving_ ? &SphAir::move<true> : &SphAir::move<false>;
+  parallel_for(chunks_.size(), options_.threads,
+               [&](size_t c, unsigned) { (this->*move)(chunks_[c], static_cast<float>(dt)); });
   state_.swap(sorted_);
   state_[count_] = {kFar, kFar, kFar, 0, 0, 0, 0, 0};
   for (const Chunk& chunk : chunks_) limited_ += chunk.limited;

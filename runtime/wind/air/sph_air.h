@@ -15,7 +15,6 @@
 
 #include "runtime/wind/air/moving_walls.h"
 #include "runtime/wind/air/sph_pass.h"
-#include "runtime/wind/air/worker_team.h"
 
 namespace liana {
 
@@ -76,7 +75,6 @@ class SphAir {
   template <class Visit>
   void for_ranges(const Eigen::Vector3f& low, const Eigen::Vector3f& high, const Visit& visit) const;
   const SphPasses& passes() const { return passes_; }
-  WorkerTeam& team() { return team_; }  ///< between steps
   const AirState* states() const { return state_.data(); }
   const float* xs() const { return x_.data(); }  ///< of all particles, m from the low corner; padded by 8
   const float* ys() const { return y_.data(); }
@@ -113,7 +111,6 @@ class SphAir {
   const AirWalls* walls_;      // null: none
   const MovingWalls* moving_;  // null: none
   const SphPasses& passes_;
-  WorkerTeam team_;
   double support_, mass_, longest_step_;
   AirConstants constants_;
   float cell_size_;
