@@ -45,10 +45,10 @@ Mesh read_obstacle_mesh(const std::filesystem::path& path) {
   return all;
 }
 
-ContactFeel read_feel(const TomlTable& table) {
-  const ContactFeel usual;
+ContactMaterial read_material(const TomlTable& table) {
+  const ContactMaterial usual;
   return {table.number_or("friction", usual.friction, 0, 1),
-          table.number_or("elasticity", usual.elasticity, 0, 1)};
+          table.number_or("elasticity", usual.restitution, 0, 1)};
 }
 
 /// Scales, rotates and moves a mesh about a point. Exact: its distance field is that of the moved mesh.
@@ -68,7 +68,7 @@ SceneObstacle read_obstacle(const TomlTable& table) {
   if (look != "plain" && look != "bricks") table.fail("look", "must be \"plain\" or \"bricks\"");
   obstacle.bricks = look == "bricks";
 
-  obstacle.feel = read_feel(table);
+  obstacle.material = read_material(table);
   if (table.has("thickness")) obstacle.thickness = table.number("thickness", 5e-4, 1);
   Vec3 pivot = Vec3::Zero();
 
@@ -164,7 +164,7 @@ Scene read_scene(const std::filesystem::path& path) {
     if (!scene.plant_contacts)
       touch->fail("friction", "means nothing while plants do not touch each other",
                   "set plant_contacts = true");
-    scene.plant_feel = read_feel(*touch);
+    scene.plant_material = read_material(*touch);
     touch->refuse_unknown_keys();
   }
   for (const TomlTable& entry : table.tables("obstacle")) scene.obstacles.push_back(read_obstacle(entry));

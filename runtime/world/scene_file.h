@@ -8,6 +8,7 @@
 
 #include "mesher/geometry/mesh.h"
 #include "runtime/growth/climber_parameters.h"
+#include "runtime/sim/contact/contact_response.h"
 #include "runtime/sim/model/plant.h"
 #include "runtime/wind/air/sph_wind.h"
 #include "runtime/world/obstacle_motion.h"
@@ -19,7 +20,7 @@ struct SceneObstacle {
   Mesh mesh;  ///< world frame, m: scaled, rotated and placed, before it moves
   Vec3 color = Vec3::Zero();
   bool bricks = false;
-  ContactFeel feel = {};
+  ContactMaterial material = {};
   std::optional<double> thickness;  ///< m, of the parts that have no inside
   std::optional<ObstacleMotion> motion;
 };
@@ -113,7 +114,8 @@ struct Scene {
   SceneWind wind;
   std::vector<SceneObstacle> obstacles;
   bool plant_contacts = false;  ///< plants touch each other and themselves
-  ContactFeel plant_feel;
+  ContactMaterial plant_material;
+  ContactWeights contact_weights;  ///< not in the file: for tests/tools/fit_contacts.cpp
   std::vector<ScenePlant> plants;
   std::vector<SceneClimber> climbers;
   std::vector<ScenePluck> plucks;

@@ -74,7 +74,7 @@ void unite_touching(std::vector<StandingSolid>& solids) {
       double finest = candidates[first].voxel;
       const auto joins = [&](size_t other) {
         const Candidate& c = candidates[other];
-        if (taken[other] || !c.may_unite || !(solids[other].feel == group.feel)) return false;
+        if (taken[other] || !c.may_unite || !(solids[other].material == group.material)) return false;
         const bool near = std::any_of(members.begin(), members.end(), [&](size_t member) {
           const Candidate& m = candidates[member];
           return (m.low.array() <= c.high.array()).all() && (c.low.array() <= m.high.array()).all();

@@ -41,16 +41,16 @@ std::vector<std::unique_ptr<SdfObstacle>> obstacles_of(const Scene& scene, std::
             obstacle.name, pieces.sheet_count, pieces.solids.size() + pieces.sheet_count, 1e3 * thickness));
       for (const Mesh& solid : pieces.solids) {
         if (!obstacle.motion) {
-          standing.push_back({solid, obstacle.feel});
+          standing.push_back({solid, obstacle.material});
           continue;
         }
         owner.push_back(&obstacle - scene.obstacles.data());
         obstacles.push_back(std::make_unique<SdfObstacle>(solid));
-        obstacles.back()->feel = obstacle.feel;
+        obstacles.back()->material = obstacle.material;
       }
       if (pieces.sheet_count == 0) continue;
       auto sheet = std::make_unique<SdfObstacle>(pieces.sheets, SdfOptions{.sheet = thickness});
-      sheet->feel = obstacle.feel;
+      sheet->material = obstacle.material;
       if (obstacle.motion) owner.push_back(&obstacle - scene.obstacles.data());
       (obstacle.motion ? obstacles : sheets).push_back(std::move(sheet));
     } catch (const Error& error) {
@@ -62,7 +62,7 @@ std::vector<std::unique_ptr<SdfObstacle>> obstacles_of(const Scene& scene, std::
   unite_touching(standing);
   for (const StandingSolid& solid : standing) {
     obstacles.push_back(std::make_unique<SdfObstacle>(solid.mesh, SdfOptions{.voxel = solid.voxel}));
-    obstacles.back()->feel = solid.feel;
+    obstacles.back()->material = solid.material;
   }
   for (auto& sheet : sheets) obstacles.push_back(std::move(sheet));
   return obstacles;
@@ -92,8 +92,10 @@ World::World(const Scene& scene, unsigned threads)
       threads_(threads),
       obstacles_(obstacles_of(scene, obstacle_of_, notes_)),
       solids_(pointers_to(obstacles_)),
-      touching_({.feel = scene.plant_feel}),
-      wind_(scene, those_that_move(false), those_that_move(true), kGroundHeight, threads) {
+      touching_({.material = scene.plant_material, .weights = scene.contact_weights}),
+      wind_(scene, those_that_move(false), those_that_move(true), kGroundHeight, threads),
+      workspaces_(threads > 0 ? threads : default_thread_count()) {
+  start_threads(threads);
   for (const ScenePlant& entry : scene.plants) add_baked(entry);
   for (size_t i = 0; i < scene.climbers.size(); ++i) add_climber(scene.climbers[i], scene.seed + i);
   for (const SceneCut& cut : scene_.cuts) check_point(cut.where, "[[cut]]");
@@ -101,7 +103,7 @@ World::World(const Scene& scene, unsigned threads)
 }
 
 void World::add_baked(const ScenePlant& entry) {
-  auto inhabitant = std::make_unique<Inhabitant>();
+  auto inhabitant = std::make_unique<Inhabitant>(ContactOptions{.weights = scene_.contact_weights});
   PlacementOptions placement;
   placement.position = entry.position;
   placement.yaw = entry.yaw;
@@ -169,7 +171,7 @@ void World::pluck(size_t index) {
 }
 
 void World::add_climber(const SceneClimber& entry, uint64_t seed) {
-  auto inhabitant = std::make_unique<Inhabitant>();
+  auto inhabitant = std::make_unique<Inhabitant>(ContactOptions{.weights = scene_.contact_weights});
   SpeciesLaw law = entry.bake.empty() ? read_species(entry.species) : read_bake(entry.bake).law;
   inhabitant->plant.name = law.species;
   inhabitant->plant.scheme.dt = scene_.time_step;
@@ -242,10 +244,11 @@ void World::step() {
       }));
   const unsigned all = threads_ > 0 ? threads_ : default_thread_count();
   const unsigned share = std::max(1u, all / std::max(1u, large));
-  parallel_for(inhabitants_.size(), threads_, [&](size_t i, unsigned) {
+  parallel_for(inhabitants_.size(), threads_, [&](size_t i, unsigned worker) {
     if (!meet) prepare(i);
-    step_inhabitant(i, share);
+    step_inhabitant(i, share, workspaces_[worker]);
   });
+  StepWorkspace::level(workspaces_);
   if (wind_.has_air()) wind_.react(in_wind_);
   break_what_is_overloaded();
   remove_parts();
@@ -263,7 +266,7 @@ void World::grow(Inhabitant& self) {
   });
 }
 
-void World::step_inhabitant(size_t index, unsigned threads) {
+void World::step_inhabitant(size_t index, unsigned threads, StepWorkspace& workspace) {
   Inhabitant& self = *inhabitants_[index];
   WorldReport& report = self.report;
   if (self.plant.particles.empty() || self.asleep()) return;
@@ -274,12 +277,12 @@ void World::step_inhabitant(size_t index, unsigned threads) {
     if (grab.plant == index) self.springs.push_back(grab.spring);
   const ContactStepReport done =
       self.stepper.step(self.plant, {solids_, kGroundHeight}, self.wrenches, self.springs,
-                        {.dt = scene_.time_step, .gravity = scene_.gravity, .threads = threads});
+                        {.dt = scene_.time_step, .gravity = scene_.gravity, .threads = threads}, workspace);
   report.contacts = done.contacts.contacts;
   report.max_penetration = std::max(report.max_penetration, done.contacts.max_penetration);
   report.contact_passes += static_cast<size_t>(done.passes - 1);
   report.redone_steps += done.step.redone > 0;
-  report.reseated_joints += static_cast<size_t>(done.step.reseated);
+  report.reseated_joints += static_cast<size_t>(done.step.projected);
   report.lost_steps += !done.step.finite;
   report.seconds.collision += done.collision_seconds;
   find_fractures(self.plant, kMostBreaksAStep, self.fractures);

@@ -71,6 +71,8 @@ class World final : public Simulation {
 
  private:
   struct Inhabitant {
+    explicit Inhabitant(const ContactOptions& contacts) : stepper(contacts) {}
+
     Plant plant;
     ContactStepper stepper;
     std::optional<Climber> climber;
@@ -115,7 +117,7 @@ class World final : public Simulation {
   void grow(Inhabitant& self);
   void add_pluck(const ScenePluck& entry, const Bake& bake);
   void pluck(size_t index);
-  void step_inhabitant(size_t index, unsigned threads);
+  void step_inhabitant(size_t index, unsigned threads, StepWorkspace& workspace);
   void add_to(DrawScene& scene, bool names) const;
   static void add(const WorldReport& own, WorldReport& total);
   // world_parts.cpp
@@ -141,6 +143,7 @@ class World final : public Simulation {
   std::vector<std::vector<WorldSpring>*> all_springs_;
   WorldWind wind_;
   std::vector<std::unique_ptr<Inhabitant>> inhabitants_;
+  std::vector<StepWorkspace> workspaces_;  // one per thread
   std::vector<PlantInWind> in_wind_;
   std::optional<Grab> grabbed_;
   std::vector<ScriptedGrab> scripted_;

@@ -142,7 +142,7 @@ void World::break_what_is_overloaded() {
 }
 
 void World::take_off(size_t index, ParticleId particle) {
-  auto part = std::make_unique<Inhabitant>();
+  auto part = std::make_unique<Inhabitant>(ContactOptions{.weights = scene_.contact_weights});
   Inhabitant& from = *inhabitants_[index];
   TopologyChange change;
   DetachedFrom origin;

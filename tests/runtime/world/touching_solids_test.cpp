@@ -27,7 +27,7 @@ TEST(TouchingSolids, TheFaceBetweenThemIsNoWayOut) {
       << "elsewhere, it is what it was";
 }
 
-TEST(TouchingSolids, WhatIsApartOrFeelsDifferentStaysItself) {
+TEST(TouchingSolids, WhatIsApartOrOfAnotherMaterialStaysItself) {
   std::vector<StandingSolid> solids{box({0, 0, 0}, {1, 1, 1}), box({1.001, 0, 0}, {2, 1, 1}),
                                     box({0, 1, 0}, {1, 2, 1}, 0.2)};
   const std::vector<StandingSolid> before = solids;
