@@ -23,7 +23,8 @@ void BroadPhase::update(std::span<const Plant* const> plants, std::span<const Ca
   take_out_moved(cache);
   if (moved_count_ == bodies_.size()) {
     tree_.pairs([&](uint32_t a, uint32_t b) { offer(a, b); });
-    make_room(pairs_, pairs_.size());
+    // Crowns that swing into each other list several times as many as at rest.
+    make_room(pairs_, std::max(pairs_.size(), 16 * bodies_.size()));
     return;
   }
   for (uint32_t i = 0; i < bodies_.size(); ++i)

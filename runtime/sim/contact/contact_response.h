@@ -55,7 +55,7 @@ struct ContactPair {
   double load = 0;       ///< N: the normal force that friction goes by
   double way = 0;        ///< m along n, that the pair shall part by in the step
   bool slides = false;   ///< without friction, whatever the material
-  ContactMaterial material;
+  ContactMaterial material = {};
 
   double approach() const { return velocity.dot(normal); }  ///< m/s, < 0 while they come nearer
   /// m that they come nearer by in a step, as they move now; never above 0.

@@ -15,7 +15,7 @@
 namespace liana {
 
 struct ContactOptions {
-  ContactMaterial ground;           ///< obstacles have their own
+  ContactMaterial ground = {};      ///< obstacles have their own
   double stiffness_ratio = 1000;    ///< normal stiffness over m/Δt²
   double least_stiffness = 5e3;     ///< N/m, of a stem's normal stiffness
   double softest_stem = 1.0 / 4;    ///< of stiffness_ratio m/Δt², where the joint bears no more
@@ -23,7 +23,7 @@ struct ContactOptions {
   double push_out_speed = 0.3;      ///< m/s, at which what is deep inside is moved out
   double buried = 1e-3;             ///< m inside, from which a particle that is new is left alone at a base
   bool remember_clearances = true;  ///< false: looks at every particle in every step, to the same effect
-  ContactWeights weights;
+  ContactWeights weights = {};
 };
 
 struct ContactReport {

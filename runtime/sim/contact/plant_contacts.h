@@ -18,15 +18,15 @@
 namespace liana {
 
 struct PlantContactOptions {
-  ContactMaterial material;
+  ContactMaterial material = {};
   double stiffness_ratio = 10;  ///< normal stiffness of a light touch over reduced mass/Δt²
   double softest = 0.25;        ///< of that, where the joints bear no more
   double deepest = 5;           ///< times ContactGeometry::soft: what is deeper, or an impact, is no stiffer
   double push_out_speed = 0.5;  ///< m/s, at which what is deep inside is moved out
   double blades_apart_speed = 0.1;  ///< m/s, the same for a blade
   double apart = 5e-4;              ///< m, beyond which an exempt pair counts as come apart
-  BroadPhaseOptions broad_phase;
-  ContactWeights weights;
+  BroadPhaseOptions broad_phase = {};
+  ContactWeights weights = {};
 };
 
 struct PlantContactReport {

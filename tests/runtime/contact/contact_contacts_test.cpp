@@ -234,6 +234,7 @@ TEST(Contacts, AreTheSameSeenFromAMovingFrame) {
       at_rest.particles[0].joint.shear_stiffness.setZero();  // the world holds nothing: none is exempt
       Plant carried = at_rest;
       at_rest.motion[1].velocity = c.velocity;
+      carried.motion[0].velocity = frame;
       carried.motion[1].velocity = c.velocity + frame;
       SdfObstacle still(box_mesh({-0.5, -0.5, -0.5}, {0.5, 0, 0.5})), box(still.mesh());
       still.material.restitution = box.material.restitution = c.restitution;
