@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
-#include <cstdint>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -13,8 +12,9 @@ namespace liana {
 
 namespace {
 
-// Threads that wait for the next loop: starting one costs as much as stepping a small plant, and what it
-// keeps in thread_local memory would be made anew.
+/// The program's threads. Each loop stands in a list until it has all helpers that it may have, or nothing is
+/// left to do; idle threads help the newest one, which is the innermost. A caller works itself and waits for
+/// nobody who has not begun, so loops inside loops cannot wait for each other.
 class Pool {
  public:
   ~Pool() {
@@ -26,51 +26,70 @@ class Pool {
     for (std::thread& thread : threads_) thread.join();
   }
 
-  // Runs work(0) here and work(1 … threads − 1) elsewhere, and waits for all. One caller at a time.
-  void run(unsigned threads, const std::function<void(unsigned)>& work) {
+  void grow(size_t helpers) {
+    if (helpers <= size_.load(std::memory_order_relaxed)) return;
+    std::lock_guard lock(mutex_);
+    while (threads_.size() < helpers) threads_.emplace_back([this] { serve(); });
+    size_ = threads_.size();
+  }
+
+  // Runs work(0) here and work(1), work(2), … up to threads − 1 on as many threads as are idle.
+  void run(unsigned threads, FunctionRef<void(unsigned)> work) {
+    Loop loop{work, threads};
     {
       std::lock_guard lock(mutex_);
-      while (threads_.size() + 1 < threads) {
-        const auto worker = static_cast<unsigned>(threads_.size() + 1);
-        threads_.emplace_back([this, worker, seen = round_] { serve(worker, seen); });
-      }
-      work_ = &work;
-      wanted_ = threads;
-      running_ = threads - 1;
-      ++round_;
+      loop.older = newest_;
+      newest_ = &loop;
     }
-    start_.notify_all();
+    for (unsigned helper = 1; helper < threads; ++helper) start_.notify_one();
     work(0);
     std::unique_lock lock(mutex_);
-    done_.wait(lock, [&] { return running_ == 0; });
+    close(loop);
+    done_.wait(lock, [&] { return loop.helpers == 0; });
   }
 
  private:
-  void serve(unsigned worker, uint64_t seen) {
+  struct Loop {  // on its caller's stack
+    FunctionRef<void(unsigned)> work;
+    unsigned threads;          // at most, with the caller
+    unsigned next_worker = 1;  // number of the next helper
+    unsigned helpers = 0;      // at work
+    Loop* older = nullptr;
+  };
+
+  void serve() {
     std::unique_lock lock(mutex_);
     for (;;) {
-      start_.wait(lock, [&] { return ending_ || round_ != seen; });
+      start_.wait(lock, [&] { return ending_ || newest_; });
       if (ending_) return;
-      seen = round_;
-      if (worker >= wanted_) continue;
-      const std::function<void(unsigned)>& work = *work_;
+      Loop& loop = *newest_;
+      const unsigned worker = loop.next_worker++;
+      ++loop.helpers;
+      if (loop.next_worker == loop.threads) close(loop);
       lock.unlock();
-      work(worker);
+      loop.work(worker);
       lock.lock();
-      if (--running_ == 0) done_.notify_one();
+      close(loop);  // nothing is left in it
+      if (--loop.helpers == 0) done_.notify_all();
     }
+  }
+
+  void close(const Loop& loop) {
+    for (Loop** at = &newest_; *at; at = &(*at)->older)
+      if (*at == &loop) {
+        *at = loop.older;
+        return;
+      }
   }
 
   std::mutex mutex_;
   std::condition_variable start_, done_;
   std::vector<std::thread> threads_;
-  const std::function<void(unsigned)>* work_ = nullptr;
-  unsigned wanted_ = 0, running_ = 0;
-  uint64_t round_ = 0;
+  std::atomic<size_t> size_ = 0;
+  Loop* newest_ = nullptr;
   bool ending_ = false;
 };
 
-std::atomic_flag pool_in_use;
 Pool& pool() {
   static Pool pool;
   return pool;
@@ -79,12 +98,18 @@ Pool& pool() {
 }  // namespace
 
 unsigned default_thread_count() {
-  return std::max(1u, std::thread::hardware_concurrency());
+  static const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+  return cores;
 }
 
-void parallel_for(size_t count, unsigned threads, const std::function<void(size_t, unsigned)>& body,
-                  size_t grain) {
+void start_threads(unsigned threads) {
   if (threads == 0) threads = default_thread_count();
+  if (threads > 1) pool().grow(threads - 1);
+}
+
+void parallel_for(size_t count, unsigned threads, FunctionRef<void(size_t, unsigned)> body, size_t grain) {
+  if (threads == 0) threads = default_thread_count();
+  start_threads(threads);
   threads = static_cast<unsigned>(std::min<size_t>(threads, (count + grain - 1) / grain));
 
   std::atomic<size_t> next{0};
@@ -92,7 +117,7 @@ void parallel_for(size_t count, unsigned threads, const std::function<void(size_
   size_t first_failure = count;
   std::exception_ptr failure;
 
-  auto work = [&](unsigned worker) {
+  const auto work = [&](unsigned worker) {
     for (size_t begin; (begin = next.fetch_add(grain)) < count;) {
       for (size_t i = begin; i < std::min(count, begin + grain); ++i) {
         try {
@@ -106,19 +131,10 @@ void parallel_for(size_t count, unsigned threads, const std::function<void(size_
       }
     }
   };
-
-  // The threads that wait are used unless another loop, perhaps the one that called this, has them.
-  if (threads < 2) {
+  if (threads < 2)
     work(0);
-  } else if (!pool_in_use.test_and_set(std::memory_order_acquire)) {
+  else
     pool().run(threads, work);
-    pool_in_use.clear(std::memory_order_release);
-  } else {
-    std::vector<std::thread> others;
-    for (unsigned worker = 1; worker < threads; ++worker) others.emplace_back(work, worker);
-    work(0);
-    for (std::thread& thread : others) thread.join();
-  }
   if (failure) std::rethrow_exception(failure);
 }
 

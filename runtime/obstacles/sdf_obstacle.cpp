@@ -60,7 +60,7 @@ double geometric_voxel(const Mesh& mesh, double sheet) {
 }
 
 SdfObstacle::SdfObstacle(const Mesh& mesh, const SdfOptions& options)
-    : surface_(mesh, options.sheet), state_(new_state()), half_sheet_(options.sheet / 2) {
+    : surface_(mesh, options.sheet, options.device), state_(new_state()), half_sheet_(options.sheet / 2) {
   low_ = high_ = surface_.mesh().positions.front();
   for (const Vec3& p : surface_.mesh().positions) low_ = low_.cwiseMin(p), high_ = high_.cwiseMax(p);
   low_.array() -= half_sheet_;

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "runtime/obstacles/contact_feel.h"
+#include "runtime/obstacles/contact_material.h"
 #include "runtime/obstacles/surface_query.h"
 
 namespace liana {
@@ -15,6 +15,7 @@ struct SdfOptions {
   double sheet = 0;  ///< m; above 0 the mesh is the middle of a sheet that thick, and may be open
   double band =
       0;  ///< m on both sides of the surface where the field is accurate; 0: 3 voxels, at least 4 cm
+  const char* device = "threads=1";       ///< Embree's own configuration; no answer depends on it
   unsigned threads = 0;                   ///< for the fill; 0: one per core. The field does not depend on it.
   size_t max_samples = size_t{64} << 20;  ///< 4 bytes each; a finer field throws Error{Input}
 };
@@ -66,7 +67,7 @@ class SdfObstacle {
   Vec3 to_mesh(const Vec3& x) const { return placed_ ? Vec3(back_ * (x - pose_.position)) : x; }
   Vec3 to_world(const Vec3& x) const { return placed_ ? Vec3(back_.transpose() * x + pose_.position) : x; }
 
-  ContactFeel feel;  ///< of its surface
+  ContactMaterial material;  ///< of its surface
 
   /// Exact, at any distance; about a microsecond.
   SurfacePoint closest_point(const Vec3& x) const;

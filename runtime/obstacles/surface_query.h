@@ -1,10 +1,10 @@
-// Exact questions to a surface, answered by Embree: the closest point, and whether a ray meets it.
+// Exact questions to a surface: the closest point, and whether a ray meets it.
 #pragma once
 
 #include <limits>
-#include <memory>
 
 #include "runtime/obstacles/closed_mesh.h"
+#include "runtime/obstacles/triangle_tree.h"
 
 namespace liana {
 
@@ -16,15 +16,14 @@ struct SurfacePoint {
   uint32_t triangle = 0;
 };
 
-/// Safe to ask from several threads. Distances are computed in double; Embree's single precision only prunes.
+/// Safe to ask from several threads. Every answer is a pure function of mesh and question, with the same bits
+/// on every processor: it is computed in double, ties go to the lowest triangle, Embree only prunes.
 class SurfaceQuery {
  public:
   /// sheet = 0: the mesh is closed and solid. Above: it is a sheet, open or not, of that thickness (m), of
   /// which the mesh is the middle; rays meet the middle. Throws Error{Input} as ClosedMesh does.
-  explicit SurfaceQuery(const Mesh& mesh, double sheet = 0);
-  ~SurfaceQuery();
-  SurfaceQuery(SurfaceQuery&&) noexcept;
-  SurfaceQuery& operator=(SurfaceQuery&&) noexcept;
+  /// device: Embree's own configuration, on which no answer depends.
+  explicit SurfaceQuery(const Mesh& mesh, double sheet = 0, const char* device = "threads=1");
 
   /// `within` (m) speeds the search up: a distance the answer is known not to exceed.
   SurfacePoint closest(const Vec3& x, double within = std::numeric_limits<double>::infinity()) const;
@@ -33,12 +32,16 @@ class SurfaceQuery {
   /// surface.
   bool ray_meets(const Vec3& x, const Vec3& direction, double skip = 1e-4) const;
 
-  const Mesh& mesh() const;  ///< welded
-  bool convex() const;       ///< a solid of few triangles that all other vertices lie behind
+  const Mesh& mesh() const { return surface_.mesh(); }  ///< welded
+  bool convex() const { return convex_; }  ///< a solid of few triangles that all other vertices lie behind
 
  private:
-  struct Embree;
-  std::unique_ptr<Embree> embree_;
+  bool is_convex(double size) const;
+
+  ClosedMesh surface_;
+  TriangleTree tree_;
+  double half_sheet_;  // m
+  bool convex_ = false;
 };
 
 }  // namespace liana

@@ -14,7 +14,8 @@ constexpr size_t kLarge = 1000;  // particles of a plant whose step is worth sha
 }  // namespace
 
 Garden::Garden(const Scene& scene, std::vector<std::string>& notes)
-    : touching_({.feel = scene.plant_contact_material}) {
+    : contact_weights_(scene.contact_weights),
+      touching_({.material = scene.plant_contact_material, .weights = scene.contact_weights}) {
   const auto add = [&](Planted planted) {
     planted.instance->origin = plants_.size();
     plants_.push_back(std::move(planted.instance));
@@ -69,7 +70,7 @@ size_t Garden::large_ones() const {
 
 Detachment Garden::detach(size_t plant, ParticleId particle, std::string name) {
   PlantInstance& from = *plants_[plant];
-  auto part = std::make_unique<PlantInstance>();
+  auto part = std::make_unique<PlantInstance>(ContactOptions{.weights = contact_weights_});
   Detachment cut{plant, plants_.size(), {}, {}};
   part->plant = detach_subtree(from.plant, particle, &cut.change, &cut.origin);
   part->plant.name = std::move(name);
@@ -86,7 +87,7 @@ void Garden::have_parts_for(size_t count) {
   if (count < origins_.size() || count > kMost) state_mismatch();
   plants_.resize(count);
   for (auto& plant : plants_)
-    if (!plant) plant = std::make_unique<PlantInstance>();
+    if (!plant) plant = std::make_unique<PlantInstance>(ContactOptions{.weights = contact_weights_});
 }
 
 void Garden::remove(size_t part) {

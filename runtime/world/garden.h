@@ -55,7 +55,7 @@ class Garden {
     if constexpr (Archive::kReads) have_parts_for(count);
     for (auto& plant : plants_) a(*plant);
     a(touching_, touched_, max_overlap_);
-    // not state: origins_: of the scene
+    // not state: origins_, contact_weights_: of the scene
     // not state: touching_seconds_: of a clock on the wall
     // not state: all_plants_, all_springs_, in_wind_: where things are
   }
@@ -66,6 +66,7 @@ class Garden {
 
   std::vector<PlantOrigin> origins_;  // of the scene's plants
   std::vector<std::unique_ptr<PlantInstance>> plants_;
+  ContactWeights contact_weights_;
   PlantContacts touching_;
   PlantContactReport touched_;
   double max_overlap_ = 0, touching_seconds_ = 0;  // m, s

@@ -36,6 +36,8 @@ struct DetachedPart {
 };
 
 struct PlantInstance {
+  explicit PlantInstance(const ContactOptions& contacts) : stepper(contacts) {}
+
   Plant plant;
   ContactStepper stepper;
   std::optional<Climber> climber;  ///< of a plant that grows

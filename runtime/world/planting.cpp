@@ -21,7 +21,7 @@ uint64_t hash_of_file(const std::filesystem::path& path) {
 }  // namespace
 
 Planted plant_baked(const Scene& scene, const ScenePlant& entry, std::vector<std::string>& notes) {
-  Planted planted{std::make_unique<PlantInstance>(), {}};
+  Planted planted{std::make_unique<PlantInstance>(ContactOptions{.weights = scene.contact_weights}), {}};
   Plant& plant = planted.instance->plant;
   PlacementOptions placement;
   placement.position = entry.position;
@@ -50,7 +50,7 @@ Planted plant_baked(const Scene& scene, const ScenePlant& entry, std::vector<std
 
 Planted plant_climber(const Scene& scene, const SceneClimber& entry, uint64_t seed,
                       std::vector<std::string>& notes) {
-  Planted planted{std::make_unique<PlantInstance>(), {}};
+  Planted planted{std::make_unique<PlantInstance>(ContactOptions{.weights = scene.contact_weights}), {}};
   SpeciesLaw law = entry.bake.empty() ? read_species(entry.species) : read_bake(entry.bake).law;
   Plant& plant = planted.instance->plant;
   plant.name = law.species;

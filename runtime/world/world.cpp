@@ -30,7 +30,10 @@ World::World(Scene scene, unsigned threads)
       weather_(scene_, obstacles_.standing(), obstacles_.moving(), kGroundHeight, threads),
       script_(scene_, garden_),
       severing_(scene_.detached),
-      identity_(identity_of(scene_, garden_)) {}
+      workspaces_(threads_),
+      identity_(identity_of(scene_, garden_)) {
+  start_threads(threads_);
+}
 
 void World::step() {
   const PhaseSeconds before = report().seconds;
@@ -54,10 +57,11 @@ void World::step() {
   // Threads that no other large plant needs share one.
   const auto large = static_cast<unsigned>(garden_.large_ones());
   const unsigned share = std::max(1u, threads_ / std::max(1u, large));
-  parallel_for(garden_.size(), threads_, [&](size_t plant, unsigned) {
+  parallel_for(garden_.size(), threads_, [&](size_t plant, unsigned worker) {
     if (!meet) prepare(plant);
-    move(plant, share);
+    move(plant, share, workspaces_[worker]);
   });
+  StepWorkspace::level(workspaces_);
   if (weather_.has_air()) weather_.react(garden_.in_wind());
 
   severing_.break_overloaded(garden_, [&](const Detachment& cut) { follow(cut, steps_ + 1); });
@@ -84,7 +88,7 @@ void World::begin_acts() {
     });
 }
 
-void World::move(size_t index, unsigned threads) {
+void World::move(size_t index, unsigned threads, StepWorkspace& workspace) {
   PlantInstance& self = garden_[index];
   if (self.plant.particles.empty() || self.asleep()) return;
   const Stopwatch watch;
@@ -92,7 +96,7 @@ void World::move(size_t index, unsigned threads) {
   grabs_.add_to(index, self.springs);
   const ContactStepReport done =
       self.stepper.step(self.plant, {obstacles_.all(), kGroundHeight}, self.wrenches, self.springs,
-                        {.dt = scene_.time_step, .gravity = scene_.gravity, .threads = threads});
+                        {.dt = scene_.time_step, .gravity = scene_.gravity, .threads = threads}, workspace);
   self.report.note(done);
   severing_.look_for_fractures(self);
   severing_.let_rest(self, scene_.time_step);

@@ -64,6 +64,7 @@ class World final : public Simulation {
     // not state: obstacles_: where they are follows from the number of steps
     // not state: scene_, identity_, threads_: of the scene and the machine
     // not state: last_step_: of a clock on the wall
+    // not state: workspaces_: working memory of one step
     if constexpr (Archive::kReads)
       if (steps_ > 0) obstacles_.move(time_of(steps_ - 1), time_of(steps_ - 1) + scene_.time_step);
   }
@@ -71,7 +72,7 @@ class World final : public Simulation {
  private:
   double time_of(size_t step) const { return static_cast<double>(step) * scene_.time_step; }
   void begin_acts();
-  void move(size_t plant, unsigned threads);
+  void move(size_t plant, unsigned threads, StepWorkspace& workspace);
   void follow(const Detachment& cut, size_t next_step);
 
   Scene scene_;
@@ -83,6 +84,7 @@ class World final : public Simulation {
   Script script_;
   Grabs grabs_;
   Severing severing_;
+  std::vector<StepWorkspace> workspaces_;  // one per thread
   uint64_t identity_;
   size_t steps_ = 0;
   PhaseSeconds last_step_;

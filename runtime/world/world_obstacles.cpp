@@ -18,7 +18,7 @@ WorldObstacles::WorldObstacles(const Scene& scene) {
   for (const SceneSolid& piece : scene.solids->pieces) {
     fields_.push_back(
         std::make_unique<SdfObstacle>(piece.mesh, SdfOptions{.voxel = piece.voxel, .sheet = piece.sheet}));
-    fields_.back()->feel = piece.contact_material;
+    fields_.back()->material = piece.contact_material;
     pointers_.push_back(fields_.back().get());
     if (!piece.moves_with) continue;
     require(motions_.size() + 1 == fields_.size(), "of a scene's solids those that move come first");

@@ -36,7 +36,7 @@ struct PlantReport {
     max_penetration = std::max(max_penetration, done.contacts.max_penetration);
     contact_passes += static_cast<size_t>(done.passes - 1);
     redone_steps += done.step.redone > 0;
-    projected_joints += static_cast<size_t>(done.step.reseated);
+    projected_joints += static_cast<size_t>(done.step.projected);
     lost_steps += !done.step.finite;
     collision_seconds += done.collision_seconds;
   }

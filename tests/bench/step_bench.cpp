@@ -90,10 +90,12 @@ BENCHMARK(direct_against_shape_matching)->Unit(benchmark::kMillisecond);
 void full_step_of_a_hundred_plants(benchmark::State& state) {
   std::vector<Plant> plants(100, tree_of(250));
   std::vector<PlantStepper> steppers(plants.size());
+  StepWorkspace workspace;
   double best = 1e9;
   for (auto _ : state)
     best = std::min(best, best_seconds(10, [&] {
-                      for (size_t i = 0; i < plants.size(); ++i) steppers[i].step(plants[i], {}, {}, {});
+                      for (size_t i = 0; i < plants.size(); ++i)
+                        steppers[i].step(plants[i], {}, {}, {}, workspace);
                     }));
   const double n = 100 * static_cast<double>(plants[0].particles.size());
   state.counters["particles"] = n;
@@ -158,7 +160,7 @@ void factor_and_solve(benchmark::State& state) {
   pose[lanes::kPoseStride * order.world_slot() + 7] = 1;
   const lanes::Kernels& kernels = lanes::best_kernels();
   const lanes::StepView view = step_view(plant, order, pose, block, record);
-  const EliminationOrder::Part top = order.top();
+  const EliminationOrder::Supernode top = order.top();
   double best = 1e9;
   for (auto _ : state) {
     for (int turn = 0; turn < 20; ++turn) {
@@ -166,7 +168,7 @@ void factor_and_solve(benchmark::State& state) {
       std::fill(block.begin(), block.end(), 0.0);
       kernels.predict(view, top.first, top.last);
       kernels.assemble(view, top.first, top.last);
-      for (const EliminationOrder::Part& part : order.parts()) {
+      for (const EliminationOrder::Supernode& part : order.supernodes()) {
         kernels.predict(view, part.first, part.last);
         kernels.assemble(view, part.first, part.last);
         const double start = processor_seconds();
@@ -174,12 +176,12 @@ void factor_and_solve(benchmark::State& state) {
         seconds += processor_seconds() - start;
       }
       const double start = processor_seconds();
-      for (const EliminationOrder::Handover& hand : order.handovers())
+      for (const EliminationOrder::ExtendAdd& hand : order.extend_adds())
         for (uint32_t i = 0; i < lanes::kBlockStride; ++i)
           block[lanes::kBlockStride * hand.to + i] += block[lanes::kBlockStride * hand.from + i];
       kernels.factor(view, top.first, top.last);
       kernels.substitute(view, top.first, top.last);
-      for (const EliminationOrder::Part& part : order.parts())
+      for (const EliminationOrder::Supernode& part : order.supernodes())
         kernels.substitute(view, part.first, part.last);
       seconds += processor_seconds() - start;
       best = std::min(best, seconds);
@@ -221,13 +223,15 @@ BENCHMARK(scaling)->ArgName("one_plant")->Arg(0)->Arg(1)->Iterations(1)->Unit(be
 void two_threads_against_one(benchmark::State& state) {
   std::vector<Plant> plants(100, tree_of(250));
   std::vector<PlantStepper> steppers(plants.size());
+  StepWorkspace workspaces[2];
   double best[2] = {1e9, 1e9};
   for (auto _ : state)
     for (int turn = 0; turn < 20; ++turn)
       for (unsigned threads : {1u, 2u}) {
         const double seconds = timed([&] {
-          parallel_for(plants.size(), threads,
-                       [&](size_t i, unsigned) { steppers[i].step(plants[i], {}, {}, {}); });
+          parallel_for(plants.size(), threads, [&](size_t i, unsigned worker) {
+            steppers[i].step(plants[i], {}, {}, {}, workspaces[worker]);
+          });
         });
         best[threads - 1] = std::min(best[threads - 1], seconds);
       }

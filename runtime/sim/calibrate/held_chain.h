@@ -41,7 +41,7 @@ class HeldChain {
 
   TimeScheme scheme_;
   Branch branch_;
-  std::vector<Particle> particles_;
+  ParticleArray particles_;
   std::vector<BodyPose> rest_;
   std::vector<JointStrain> joint_;
   Eigen::Matrix<double, Eigen::Dynamic, 2> X_, MX_;

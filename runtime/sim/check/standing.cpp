@@ -6,7 +6,7 @@ namespace liana {
 namespace {
 
 // m, from the root to the farthest particle
-double extent(const std::vector<Motion>& motion) {
+double extent(std::span<const Motion> motion) {
   double distance = 0;
   for (const Motion& m : motion) distance = std::max(distance, (m.position - motion[0].position).norm());
   return distance;
@@ -15,7 +15,7 @@ double extent(const std::vector<Motion>& motion) {
 }  // namespace
 
 Standing check_standing(Plant plant, Progress& progress, const Vec3& gravity) {
-  const std::vector<Motion> modelled = plant.motion;
+  const MotionArray modelled = plant.motion;
   const StepOptions options{.dt = plant.scheme.dt, .gravity = gravity};
   const auto steps = [&](double seconds) { return static_cast<int>(std::ceil(seconds / options.dt)); };
   std::vector<Wrench> push(plant.particles.size());

@@ -7,11 +7,13 @@
 namespace liana {
 namespace {
 
-constexpr double kMostRoom = 0.03;   // m; below what any solid's band is
-constexpr double kLeastRoom = 5e-5;  // m, below which it is not worth remembering
-constexpr double kFloat = 1e-6;      // more than a float is off
-constexpr uint8_t kTryAgain = 8;     // calls
-constexpr double kRounding = 1e-9;   // m
+// Bounds may be wider or tighter to the same effect: none of these changes an answer, only what it costs.
+constexpr double kMostRoom = 0.03;  // m; below the band of any solid (4 cm), beyond which nothing is known
+constexpr double kLeastRoom =
+    5e-5;                           // m: a particle at 2 mm/s, which is at rest to the eye, uses it in a step
+constexpr double kFloat = 1e-6;     // more than a float is off: 16 roundings of 6e-8
+constexpr uint8_t kTryAgain = 8;    // calls: looking in vain costs an eighth of looking in each
+constexpr double kRounding = 1e-9;  // m: a double is off by 1e-14 at a hundred metres
 
 /// Half of a box around a particle as probes see it, m: a stem is a cylinder, a blade has its width in the
 /// middle and none at its ends.

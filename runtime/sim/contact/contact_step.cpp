@@ -6,13 +6,13 @@ namespace liana {
 
 ContactStepReport ContactStepper::step(Plant& plant, const CollisionScene& scene,
                                        std::span<const Wrench> external, std::vector<WorldSpring>& springs,
-                                       const StepOptions& options) {
+                                       const StepOptions& options, StepWorkspace& workspace) {
   ContactStepReport report;
   report.collision_seconds += timed([&] { report.contacts = contacts_.gather(plant, scene, springs); });
   size_t known = 0;
   for (;;) {
-    report.step = known > 0 ? stepper_.again(plant, external, springs, known, options)
-                            : stepper_.step(plant, external, springs, options);
+    report.step = known > 0 ? stepper_.again(plant, external, springs, known, options, workspace)
+                            : stepper_.step(plant, external, springs, options, workspace);
     known = springs.size();
     report.solves += report.step.solves;
     if (++report.passes >= options_.most_passes) break;

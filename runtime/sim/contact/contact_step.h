@@ -20,13 +20,20 @@ struct ContactStepReport {
 };
 
 /// PlantStepper::step() with contacts. springs: wind, grabs; the contacts are appended. Keep one per plant.
+/// Like that it allocates nothing, unless there are more contacts than ever and more than particles.
 class ContactStepper {
  public:
   explicit ContactStepper(const ContactOptions& contacts = {}, const ContactStepOptions& options = {})
       : contacts_(contacts), options_(options) {}
 
   ContactStepReport step(Plant& plant, const CollisionScene& scene, std::span<const Wrench> external,
-                         std::vector<WorldSpring>& springs, const StepOptions& options);
+                         std::vector<WorldSpring>& springs, const StepOptions& options,
+                         StepWorkspace& workspace);
+  /// The same, in a workspace of its own.
+  ContactStepReport step(Plant& plant, const CollisionScene& scene, std::span<const Wrench> external,
+                         std::vector<WorldSpring>& springs, const StepOptions& options) {
+    return step(plant, scene, external, springs, options, own_);
+  }
 
   /// Takes what was removed from the plant, as step() does first.
   void take(const Plant& plant) { contacts_.take(plant); }
@@ -43,6 +50,7 @@ class ContactStepper {
   Contacts contacts_;
   ContactStepOptions options_;
   PlantStepper stepper_;
+  StepWorkspace own_;  // empty when all steps bring one
 };
 
 }  // namespace liana

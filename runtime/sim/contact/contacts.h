@@ -7,18 +7,22 @@
 #include <span>
 #include <vector>
 
-#include "runtime/obstacles/contact_feel.h"
+#include "runtime/sim/contact/contact_response.h"
 #include "runtime/sim/contact/probes.h"
 #include "runtime/sim/model/plant.h"
 
 namespace liana {
 
 struct ContactOptions {
-  ContactFeel ground;               ///< obstacles have their own
+  ContactMaterial ground = {};      ///< obstacles have their own
   double stiffness_ratio = 1000;    ///< normal stiffness over m/Δt²
-  double least_stiffness = 5e3;     ///< N/m
+  double least_stiffness = 5e3;     ///< N/m, of a stem's normal stiffness
+  double softest_stem = 1.0 / 4;    ///< of stiffness_ratio m/Δt², where the joint bears no more
+  double softest_blade = 1.0 / 16;  ///< the same for a blade
   double push_out_speed = 0.3;      ///< m/s, at which what is deep inside is moved out
+  double buried = 1e-3;             ///< m inside, from which a particle that is new is left alone at a base
   bool remember_clearances = true;  ///< false: looks at every particle in every step, to the same effect
+  ContactWeights weights = {};
 };
 
 struct ContactReport {
@@ -62,16 +66,19 @@ class Contacts {
   struct Made {
     uint64_t key = 0;  // particle, probe, solid
     Vec3 normal = Vec3::Zero();
-    Grip grip = {};
+    StickAnchor anchor = {};
     bool operator<(const Made& other) const { return key < other.key; }
     template <class Archive>
     void persist(Archive& a) {
-      a(key, normal, grip);
+      a(key, normal, anchor);
     }
   };
+  struct Touch;
   void notice_new_particles(const Plant& plant, const CollisionScene& scene);
-  WorldSpring spring(const Plant& plant, const Motion& motion, const Gap& found, double to_surface,
-                     Grip& grip) const;
+  Touch touch_of(const Plant& plant, const Motion& motion, const Gap& found) const;
+  void stiffen(const Plant& plant, const Gap& found, ContactPair& pair) const;
+  WorldSpring respond(const Plant& plant, const Motion& motion, const Gap& found, Touch& touch,
+                      StickAnchor& anchor) const;
 
   Clearances* clearances() { return options_.remember_clearances ? &clearances_ : nullptr; }
 

@@ -6,13 +6,23 @@
 #include <functional>
 #include <limits>
 
+#include "runtime/sim/contact/make_room.h"
+
 namespace liana {
 namespace {
 
-constexpr size_t kAtOnce = 32;    // neighbours in the arrays are neighbours in space
-constexpr double kSlow = 5e-3;    // m a step, below which the solid is a half space
+// Neighbours in the arrays are neighbours in space: a box around so many is tried first. No answer depends on
+// it.
+constexpr size_t kAtOnce = 32;
+// m a step, below which the solid is a half space: half of a bar of 1 cm, which is so not passed.
+constexpr double kSlow = 5e-3;
 constexpr uint64_t kBetween = 3;  // the probe between the ends
-constexpr double kTouch = 2e-4;   // m, at which a sweep has arrived
+// m, at which a sweep has arrived: less than half of what ContactStepOptions::tolerance lets a step end
+// inside by.
+constexpr double kTouch = 2e-4;
+// Of a unit vector, that must be across the axis to give a direction: 2°, where rounding of the field's
+// gradient (a tenth of a voxel over a voxel's length, at worst 0.1) would decide.
+constexpr double kAcross = 0.03;
 
 /// A plane that touches a solid where it is closest to a point.
 struct Nearest {
@@ -48,6 +58,7 @@ double travel_of(const Particle& particle, const Motion& motion, double dt) {
 const std::vector<Gap>& Probes::look(const Plant& plant, const CollisionScene& scene, double dt, size_t first,
                                      Clearances* clearances) {
   gaps_.clear();
+  make_room(gaps_, plant.particles.size());
   if (clearances) clearances->begin(plant.particles.size(), scene.solids, scene.ground_height);
   for (size_t i = first; i < plant.particles.size(); i += kAtOnce)
     look(plant, scene, dt, i, std::min(i + kAtOnce, plant.particles.size()), clearances);
@@ -193,7 +204,7 @@ class Probes::View {
       if (blade_) {
         const double ahead = nearest_to(x - 2 * gap * plane, kFar).distance;
         normal = ahead > nearest_to(x + 2 * gap * plane, kFar).distance ? plane : Vec3(-plane);
-      } else if (const Vec3 across = normal - normal.dot(axis) * axis; across.norm() > 0.03) {
+      } else if (const Vec3 across = normal - normal.dot(axis) * axis; across.norm() > kAcross) {
         normal = across.normalized();
       }
     }

@@ -69,19 +69,9 @@ struct alignas(64) Particle {
   }
 };
 
-}  // namespace liana
-
-// Vectors of these, which make up most of a large plant, lie in large pages.
-template <>
-struct std::allocator<liana::Motion> : liana::LargePages<liana::Motion> {
-  using LargePages::LargePages;
-};
-template <>
-struct std::allocator<liana::Particle> : liana::LargePages<liana::Particle> {
-  using LargePages::LargePages;
-};
-
-namespace liana {
+/// Arrays of these make up most of a large plant: they lie in large pages.
+using MotionArray = std::vector<Motion, LargePages<Motion>>;
+using ParticleArray = std::vector<Particle, LargePages<Particle>>;
 
 /// A spring from a point of a particle to a point of the world: anchor, grab, contact. Only ever adds to the
 /// particle's own 6×6 block, so the tree stays solvable in linear time.
@@ -147,8 +137,8 @@ struct TimeScheme {
 struct Plant {
   std::string name;
   TimeScheme scheme;
-  std::vector<Motion> motion;        ///< one per particle
-  std::vector<Particle> particles;   ///< parents first
+  MotionArray motion;                ///< one per particle
+  ParticleArray particles;           ///< parents first
   std::vector<Branch> branches;      ///< parents first
   std::vector<WorldSpring> anchors;  ///< persist; contacts and grabs are given to each step anew
   std::vector<LineageId> lineage;    ///< one per particle; empty in plants put together by hand

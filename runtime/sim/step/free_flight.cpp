@@ -12,7 +12,7 @@ bool is_free(const Plant& plant) {
   });
 }
 
-void keep_angular_momentum(const std::vector<Motion>& before, Plant& plant) {
+void keep_angular_momentum(std::span<const Motion> before, Plant& plant) {
   if (plant.particles.empty() || !plant.particles[0].joint.shear_stiffness.isZero(0)) return;
   double mass = 0;
   for (const Particle& particle : plant.particles) {
@@ -22,7 +22,7 @@ void keep_angular_momentum(const std::vector<Motion>& before, Plant& plant) {
   if (!is_free(plant) || !(mass > 0)) return;
   Vec3 centre = Vec3::Zero();
   Mat3 inertia = Mat3::Zero();
-  const auto angular_momentum = [&](const std::vector<Motion>& motion) {
+  const auto angular_momentum = [&](std::span<const Motion> motion) {
     Vec3 drift = Vec3::Zero(), sum = Vec3::Zero();
     centre.setZero();
     inertia.setZero();

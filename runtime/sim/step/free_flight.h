@@ -1,6 +1,8 @@
 // Plants that nothing holds.
 #pragma once
 
+#include <span>
+
 #include "runtime/sim/model/plant.h"
 
 namespace liana {
@@ -11,6 +13,6 @@ bool is_free(const Plant& plant);
 /// After a step of a free plant without mass damping on which nothing but gravity acts: joints exert no net
 /// moment, but a step changes its angular momentum by a share of (ω h)². The plant is turned as a whole by
 /// what is missing since `before`. Does nothing to any other plant.
-void keep_angular_momentum(const std::vector<Motion>& before, Plant& plant);
+void keep_angular_momentum(std::span<const Motion> before, Plant& plant);
 
 }  // namespace liana

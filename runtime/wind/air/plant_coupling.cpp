@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 
 #include "mesher/base/fixed_math.h"
+#include "mesher/base/parallel.h"
 
 namespace liana {
 namespace {
@@ -66,29 +66,17 @@ void PlantCoupling::find(std::span<const PlantInWind> plants, const WindField* a
   dt_ = dt;
   make_blocks(plants);
   const size_t count = first_block_.back(), n = air_.size();
-  struct Work {
-    std::span<const PlantInWind> plants;
-    const WindField* ambient;
-    double time;
-    size_t count;
-    std::atomic<size_t> next = 0, next_settled = 0;
-  } work{plants, ambient, time, count};
   load_.assign(n, 0.0f);
-  air_.team().run([this, &work](unsigned worker) {
-    for (size_t b; (b = work.next.fetch_add(1)) < work.count;)
-      find_pairs(blocks_[b], work.plants[blocks_[b].plant], work.ambient, work.time);
-    air_.team().wait();
-    if (worker == 0) {
-      const auto per_mass = static_cast<float>(dt_ / air_.particle_mass());
-      for (size_t b = 0; b < work.count; ++b) {
-        const Block& block = blocks_[b];
-        const uint32_t pairs = block.targets.empty() ? 0 : block.targets.back().last;
-        for (uint32_t k = 0; k < pairs; ++k) load_[block.air[k]] += per_mass * block.weight[k];
-      }
-    }
-    air_.team().wait();
-    for (size_t b; (b = work.next_settled.fetch_add(1)) < work.count;) settle(blocks_[b]);
-  });
+  const unsigned threads = air_.options().threads;
+  parallel_for(count, threads,
+               [&](size_t b, unsigned) { find_pairs(blocks_[b], plants[blocks_[b].plant], ambient, time); });
+  const auto per_mass = static_cast<float>(dt_ / air_.particle_mass());
+  for (size_t b = 0; b < count; ++b) {
+    const Block& block = blocks_[b];
+    const uint32_t pairs = block.targets.empty() ? 0 : block.targets.back().last;
+    for (uint32_t k = 0; k < pairs; ++k) load_[block.air[k]] += per_mass * block.weight[k];
+  }
+  parallel_for(count, threads, [&](size_t b, unsigned) { settle(blocks_[b]); });
 }
 
 void PlantCoupling::find_pairs(Block& block, const PlantInWind& in, const WindField* ambient, double time) {

@@ -1,12 +1,12 @@
 #include "runtime/wind/air/sph_air.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <utility>
 
 #include "mesher/base/error.h"
 #include "mesher/base/fixed_math.h"
+#include "mesher/base/parallel.h"
 #include "runtime/wind/air/sph_kernels.h"
 
 namespace liana {
@@ -59,10 +59,9 @@ SphAir::SphAir(const AirOptions& o, const AirWalls* walls, const MovingWalls* mo
       longest_step_(longest_step_of(o, support_)),
       constants_(constants_of(o, support_, mass_)),
       passes_(sph_passes(o.portable)),
-      team_(o.threads),
       cells_(o.high - o.low, support_, o.capacity),
       boundary_(walls, moving, cells_, constants_, o.spacing, o.capacity),
-      neighbours_(passes_, constants_, o.capacity, team_.size()),
+      neighbours_(passes_, constants_, o.capacity, o.threads > 0 ? o.threads : default_thread_count()),
       bodies_(o.low, support_, o.rest_density, o.capacity),
       state_(o.capacity + 16),
       sorted_(o.capacity + 16),
@@ -112,24 +111,13 @@ void SphAir::step(double dt, std::span<AirBody> bodies) {
   if (count_ == 0) return;
   bodies_.find(bodies, cells_);
   if (boundary_.moves()) boundary_.mark_moving(cells_);
-  struct Work {
-    double dt;
-    std::span<AirBody> bodies;
-    void (SphAir::*densities)(size_t);
-    void (SphAir::*move)(size_t, float);
-    std::atomic<size_t> next_density = 0, next_move = 0;
-  } work{dt, bodies, boundary_.moves() ? &SphAir::densities<true> : &SphAir::densities<false>,
-         boundary_.moves() ? &SphAir::move<true> : &SphAir::move<false>};
-  team_.run([this, &work](unsigned worker) {
-    for (size_t c; (c = work.next_density.fetch_add(1)) < neighbours_.chunks();) (this->*work.densities)(c);
-    team_.wait();
-    if (!work.bodies.empty()) {
-      if (worker == 0) bodies_.push(work.bodies, state_.data(), mass_, work.dt);
-      team_.wait();
-    }
-    for (size_t c; (c = work.next_move.fetch_add(1)) < neighbours_.chunks();)
-      (this->*work.move)(c, static_cast<float>(work.dt));
-  });
+  const auto densities = boundary_.moves() ? &SphAir::densities<true> : &SphAir::densities<false>;
+  const auto move = boundary_.moves() ? &SphAir::move<true> : &SphAir::move<false>;
+  const size_t chunks = neighbours_.chunks();
+  parallel_for(chunks, options_.threads, [&](size_t c, unsigned) { (this->*densities)(c); });
+  if (!bodies.empty()) bodies_.push(bodies, state_.data(), mass_, dt);
+  parallel_for(chunks, options_.threads,
+               [&](size_t c, unsigned) { (this->*move)(c, static_cast<float>(dt)); });
   swap_in(count_);
   for (const size_t limited : chunk_limited_) limited_ += limited;
   bodies_.clear();

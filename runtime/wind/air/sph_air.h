@@ -18,7 +18,6 @@
 #include "runtime/wind/air/air_boundary.h"
 #include "runtime/wind/air/air_cells.h"
 #include "runtime/wind/air/air_neighbours.h"
-#include "runtime/wind/air/worker_team.h"
 
 namespace liana {
 
@@ -72,7 +71,6 @@ class SphAir {
   /// Who is where, as of the last sort: places relative to the domain's low corner.
   const AirCells& cells() const { return cells_; }
   const SphPasses& passes() const { return passes_; }
-  WorkerTeam& team() { return team_; }  ///< between steps
   const AirState* states() const { return state_.data(); }
 
   template <class Archive>
@@ -81,7 +79,7 @@ class SphAir {
     if (count_ > options_.capacity) state_mismatch();
     std::span<AirState> there(state_.data(), count_);
     a(there);
-    // not state: options_, passes_, team_, support_, mass_, longest_step_, constants_: set once
+    // not state: options_, passes_, support_, mass_, longest_step_, constants_: set once
     // not state: cells_: made again from the particles, which are in their order
     // not state: boundary_, neighbours_, bodies_, sorted_, chunk_limited_: working memory of one step
     if constexpr (Archive::kReads) sort();
@@ -98,7 +96,6 @@ class SphAir {
   double support_, mass_, longest_step_;
   AirConstants constants_;
   const SphPasses& passes_;
-  WorkerTeam team_;
   AirCells cells_;
   AirBoundary boundary_;
   AirNeighbours neighbours_;

@@ -8,6 +8,7 @@
 
 #include "mesher/geometry/mesh.h"
 #include "runtime/growth/climber_parameters.h"
+#include "runtime/sim/contact/contact_response.h"
 #include "runtime/sim/model/plant.h"
 #include "runtime/wind/air/sph_wind.h"
 #include "runtime/world/scene/obstacle_motion.h"
@@ -19,7 +20,7 @@ struct SceneObstacle {
   Mesh mesh;  ///< world frame, m: scaled, rotated and placed, before it moves
   Vec3 color = Vec3::Zero();
   bool bricks = false;
-  ContactFeel contact_material = {};
+  ContactMaterial contact_material = {};
   std::optional<double> thickness;  ///< m, of the parts that have no inside
   std::optional<ObstacleMotion> motion;
 
@@ -69,14 +70,14 @@ struct SceneClimber {
 /// A piece of the obstacles, ready to make a distance field of.
 struct SceneSolid {
   Mesh mesh;  ///< closed, outward; of a sheet, its middle, which may be open
-  ContactFeel contact_material = {};
+  ContactMaterial contact_material = {};
   double voxel = 0;                  ///< m, of its distance field; 0: as its shape suggests
   double sheet = 0;                  ///< m, its thickness; 0: a solid
   std::optional<size_t> moves_with;  ///< which obstacle of the scene it is a piece of, when that moves
 
   template <class Archive>
   void persist(Archive& a) {
-    a(mesh.positions, mesh.triangles, contact_material.friction, contact_material.elasticity, voxel, sheet,
+    a(mesh.positions, mesh.triangles, contact_material.friction, contact_material.restitution, voxel, sheet,
       moves_with);
   }
 };
@@ -195,7 +196,8 @@ struct Scene {
   /// runtime/app/scene or with_separate_solids() of scene_solids.h adds it.
   std::optional<SceneSolids> solids;
   bool plant_contacts = false;  ///< plants touch each other and themselves
-  ContactFeel plant_contact_material;
+  ContactMaterial plant_contact_material;
+  ContactWeights contact_weights;  ///< not in the file: for tests/tools/fit_contacts.cpp
   std::vector<ScenePlant> plants;
   std::vector<SceneClimber> climbers;
   std::vector<SceneImpulse> impulses;
@@ -207,8 +209,8 @@ struct Scene {
   template <class Archive>
   void persist(Archive& a) {
     a(seed, time_step, gravity, solver, to_sun, wind, obstacles, solids, plant_contacts,
-      plant_contact_material.friction, plant_contact_material.elasticity, plants, climbers, impulses, cuts,
-      grabs, detached);
+      plant_contact_material.friction, plant_contact_material.restitution, contact_weights, plants, climbers,
+      impulses, cuts, grabs, detached);
     // not state: file, title, seconds, camera: how it is found, run and seen
   }
 };

@@ -45,11 +45,11 @@ Mesh read_obstacle_mesh(const std::filesystem::path& path) {
   return all;
 }
 
-ContactFeel read_contact_material(const TomlTable& table) {
-  const ContactFeel usual;
+ContactMaterial read_contact_material(const TomlTable& table) {
+  const ContactMaterial usual;
   const char* restitution = table.has("elasticity") ? "elasticity" : "restitution";  // its old name
   return {table.number_or("friction", usual.friction, 0, 1),
-          table.number_or(restitution, usual.elasticity, 0, 1)};
+          table.number_or(restitution, usual.restitution, 0, 1)};
 }
 
 /// Scales, rotates and moves a mesh about a point. Exact: its distance field is that of the moved mesh.

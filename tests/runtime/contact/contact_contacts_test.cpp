@@ -180,15 +180,15 @@ TEST(Contacts, TheFrictionConeIsCoulombs) {
   }
 }
 
-TEST(Contacts, AStickReboundsWithItsElasticity) {
-  for (const double elasticity : {0.0, 0.5, 1.0}) {
+TEST(Contacts, AStickReboundsWithItsRestitution) {
+  for (const double restitution : {0.0, 0.5, 1.0}) {
     SdfObstacle box(box_mesh({-0.5, -0.5, -0.5}, {0.5, 0, 0.5}));
-    box.feel.elasticity = elasticity;
+    box.material.restitution = restitution;
     const SdfObstacle* solids[] = {&box};
     Plant plant = loose_stick({0, 0.2, 0}, kLying);
     plant.motion[1].velocity = {0, -2, 0};
     run(plant, {solids, {}}, 12, Vec3::Zero());
-    EXPECT_NEAR(plant.motion[1].velocity.y(), 2 * elasticity, 0.05) << elasticity;
+    EXPECT_NEAR(plant.motion[1].velocity.y(), 2 * restitution, 0.05) << restitution;
   }
 }
 
@@ -216,6 +216,44 @@ TEST(Contacts, AMovingBoxPushesAndCarriesWhatLiesOnIt) {
       << "a fifth of its way in the last step";
   EXPECT_NEAR((plant.motion[1].velocity - velocity).norm(), 0, 0.03);
   EXPECT_LT(deepest, 1e-3);
+}
+
+TEST(Contacts, AreTheSameSeenFromAMovingFrame) {
+  // Gently, deep inside, hard and elastic, and sliding; the box's frame moves up, down and sideways.
+  struct Case {
+    double height;
+    Vec3 velocity;
+    double restitution;
+  };
+  for (const Case& c : {Case{2e-3, Vec3::Zero(), 0}, Case{-0.02, Vec3::Zero(), 0}, Case{0.1, {0, -3, 0}, 0.5},
+                        Case{1e-3, {0.4, -0.2, 0}, 0}})
+    for (const Vec3& frame : {Vec3(0, 0.5, 0), Vec3(0, -0.5, 0), Vec3(0.7, -0.2, 0.1)}) {
+      // Tilted: of a stick that lies flat, rounding decides which point comes first.
+      const Quat tilted(Eigen::AngleAxisd(kPi / 2 + 0.05, Vec3::UnitZ()));
+      Plant at_rest = loose_stick({0, c.height, 0}, tilted);
+      at_rest.particles[0].joint.shear_stiffness.setZero();  // the world holds nothing: none is exempt
+      Plant carried = at_rest;
+      at_rest.motion[1].velocity = c.velocity;
+      carried.motion[0].velocity = frame;
+      carried.motion[1].velocity = c.velocity + frame;
+      SdfObstacle still(box_mesh({-0.5, -0.5, -0.5}, {0.5, 0, 0.5})), box(still.mesh());
+      still.material.restitution = box.material.restitution = c.restitution;
+      const SdfObstacle *of_still[] = {&still}, *of_box[] = {&box};
+      ContactStepper one, other;
+      ObstaclePose pose;
+      for (int i = 1; i <= 20; ++i) {
+        std::vector<WorldSpring> springs, more;
+        one.step(at_rest, {of_still, {}}, {}, springs, {});
+        pose.position = i * at_rest.scheme.dt * frame;
+        pose.centre = pose.position;
+        pose.velocity = frame;
+        box.place(pose);
+        other.step(carried, {of_box, {}}, {}, more, {});
+        const Vec3 along = at_rest.scheme.dt * frame * i;
+        ASSERT_LT((carried.motion[1].position - along - at_rest.motion[1].position).norm(), 1e-7)
+            << "step " << i << ", height " << c.height << ", frame " << frame.transpose();
+      }
+    }
 }
 
 TEST(Contacts, AThinBarIsNotPassedWhereverItMeetsTheStick) {

@@ -91,9 +91,9 @@ struct Together {
 
 TEST(PlantContacts, TwoFreeSticksThatMeetKeepTheirMomentum) {
   for (const double heavier : {1.0, 10.0, 300.0}) {
-    for (const double elasticity : {0.0, 0.5, 1.0}) {
+    for (const double restitution : {0.0, 0.5, 1.0}) {
       PlantContactOptions options;
-      options.feel.elasticity = elasticity;
+      options.material.restitution = restitution;
       Together two;
       two.contacts = PlantContacts(options);
       two.plants.push_back(free_stick({0, 0.05, 0}, kAlongX, 0.01, {0, -1, 0}));
@@ -101,11 +101,11 @@ TEST(PlantContacts, TwoFreeSticksThatMeetKeepTheirMomentum) {
       const Vec3 before = two.momentum();
       for (int i = 0; i < 40; ++i) two.step();
       EXPECT_GT(two.touched, 0u);
-      EXPECT_LT((two.momentum() - before).norm(), 1e-9 * 0.01) << heavier << " " << elasticity;
-      // [Haedrich17] §5.2: the relative speed of 1.5 m/s along the normal is multiplied by the elasticity.
+      EXPECT_LT((two.momentum() - before).norm(), 1e-9 * 0.01) << heavier << " " << restitution;
+      // [Haedrich17] §5.2: the relative speed of 1.5 m/s along the normal is multiplied by the restitution.
       const double leaving = (two.plants[0].motion[0].velocity - two.plants[1].motion[0].velocity).y();
       // An inelastic stop leaves the time step a lingering acceleration, worth a tenth.
-      EXPECT_NEAR(leaving, 1.5 * elasticity, elasticity > 0 ? 0.03 : 0.15) << heavier;
+      EXPECT_NEAR(leaving, 1.5 * restitution, restitution > 0 ? 0.03 : 0.15) << heavier;
     }
   }
 }
@@ -333,17 +333,17 @@ TEST(PlantContacts, NothingIsTooSmallTooLightOrTooNear) {
 
 TEST(PlantContacts, NeighboursAreFoundWhateverTheirSizes) {
   // Against all pairs, one by one.
-  std::vector<FlatBox> boxes;
+  std::vector<Aabb> boxes;
   uint32_t state = 1;
   const auto random = [&] {
     return static_cast<float>((state = state * 1664525u + 1013904223u) >> 8) * 0x1p-24f;
   };
   for (int i = 0; i < 600; ++i) {
-    const FlatBox::Corner centre{random(), random(), random(), 0};
+    const Aabb::Corner centre{random(), random(), random(), 0};
     const float half = i % 100 == 0 ? 0.4f : 0.01f + 0.03f * random();
     boxes.push_back({centre - half, centre + half});
   }
-  const auto overlap = [](const FlatBox& a, const FlatBox& b) {
+  const auto overlap = [](const Aabb& a, const Aabb& b) {
     for (int axis = 0; axis < 3; ++axis)
       if (a.low[axis] > b.high[axis] || b.low[axis] > a.high[axis]) return false;
     return true;
@@ -352,11 +352,11 @@ TEST(PlantContacts, NeighboursAreFoundWhateverTheirSizes) {
   for (const size_t count : {size_t{0}, size_t{1}, size_t{5}, size_t{77}, boxes.size()}) {
     const std::span some(boxes.data(), count);
     std::vector<std::pair<uint32_t, uint32_t>> found, asked, expected;
-    BoxPairs finder;
+    AabbTree finder;
     finder.fit(some);
-    finder.all([&](uint32_t a, uint32_t b) { found.emplace_back(a, b); });
+    finder.pairs([&](uint32_t a, uint32_t b) { found.emplace_back(a, b); });
     for (uint32_t i = 0; i < count; ++i) {
-      finder.of(i, [&](uint32_t other) {
+      finder.overlaps_of(i, [&](uint32_t other) {
         if (i < other) asked.emplace_back(i, other);
       });
       for (uint32_t j = i + 1; j < count; ++j)

@@ -82,7 +82,7 @@ TEST(GrownWeight, APlantStandsAsItGrew) {
   Plant plant = chain();
   std::vector<RestPose> rest;
   carry_grown_weight(plant, {0, -9.81, 0}, rest);
-  const std::vector<Motion> start = plant.motion;
+  const MotionArray start = plant.motion;
   PlantStepper stepper;
   for (int i = 0; i < 40; ++i) stepper.step(plant, {}, {}, {});
   for (size_t i = 0; i < 3; ++i) EXPECT_LT((plant.motion[i].position - start[i].position).norm(), 1e-9);

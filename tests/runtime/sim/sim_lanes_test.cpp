@@ -74,13 +74,15 @@ TEST(Lanes, AStepTakenAgainWithMoreSpringsIsThatStep) {
   for (const unsigned threads : {1u, 2u}) {
     Storm storm(30, 0.2), other(30, 0.3);
     PlantStepper stepper, elsewhere;
+    StepWorkspace shared, another;
     const StepOptions options{.most_redo_substeps = 1, .threads = threads};
     for (int i = 0; i < 12; ++i) {
-      const std::vector<Motion> start = storm.plant.motion;
+      const MotionArray start = storm.plant.motion;
       std::vector<WorldSpring> springs = storm.springs;
-      stepper.step(storm.plant, storm.wind, springs, options);
-      // Another plant in between takes the memory that the thread keeps.
-      if (i % 3 == 2) elsewhere.step(other.plant, other.wind, other.springs, options);
+      stepper.step(storm.plant, storm.wind, springs, options, shared);
+      // Another plant in between takes the workspace; or this one goes on in another.
+      if (i % 3 == 2) elsewhere.step(other.plant, other.wind, other.springs, options, shared);
+      StepWorkspace& workspace = i % 4 == 3 ? another : shared;
       std::vector<uint64_t> hashes;
       std::vector<double> gaps;
       size_t known = springs.size();
@@ -90,7 +92,7 @@ TEST(Lanes, AStepTakenAgainWithMoreSpringsIsThatStep) {
         springs.push_back(
             {ParticleId(at), Vec3::Zero(), start[at].position, 300 * Mat3::Identity(), Mat3::Identity()});
         storm.plant.motion = start;
-        gaps.push_back(stepper.again(storm.plant, storm.wind, springs, known, options).gap);
+        gaps.push_back(stepper.again(storm.plant, storm.wind, springs, known, options, workspace).gap);
         hashes.push_back(state_hash(storm.plant));
       }
       for (size_t pass = 0; pass < 2; ++pass) {
@@ -143,9 +145,9 @@ TEST(Lanes, GiveTheSameBitsOnAnyNumberOfThreads) {
 void expect_sound(const EliminationOrder& order, const Plant& plant, double fill) {
   const auto packs = order.packs();
   std::set<uint32_t> done;
-  std::vector<EliminationOrder::Part> parts(order.parts().begin(), order.parts().end());
+  std::vector<EliminationOrder::Supernode> parts(order.supernodes().begin(), order.supernodes().end());
   parts.push_back(order.top());
-  for (const auto& [first, last, handover] : parts) {
+  for (const auto& [first, last, extend_add] : parts) {
     std::set<uint32_t> slots;
     for (uint32_t p = first; p < last; ++p) {
       const lanes::Pack& pack = packs[p];
@@ -171,7 +173,7 @@ TEST(EliminationOrder, PutsChildrenBeforeParentsAndEveryParticleOnce) {
     order.update(plant.particles, false);
     // Few lanes stay empty; in a small plant the trunk's particles have nobody beside them.
     expect_sound(order, plant, branches == 40 ? 0.9 : 0.5);
-    EXPECT_EQ(order.parts().empty(), branches < 40);
+    EXPECT_EQ(order.supernodes().empty(), branches < 40);
   }
 }
 
@@ -181,7 +183,7 @@ TEST(EliminationOrder, NoticesAnotherTreeOfTheSameSize) {
   order.update(plant.particles, false);
   const auto holds = [&] {
     bool all = order.still_holds(plant.particles, order.top());
-    for (const auto& part : order.parts()) all &= order.still_holds(plant.particles, part);
+    for (const auto& part : order.supernodes()) all &= order.still_holds(plant.particles, part);
     return all;
   };
   EXPECT_TRUE(holds());

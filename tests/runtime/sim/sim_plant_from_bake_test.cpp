@@ -9,7 +9,7 @@
 namespace liana {
 namespace {
 
-double largest_move(const std::vector<Motion>& from, const std::vector<Motion>& to) {
+double largest_move(const MotionArray& from, const MotionArray& to) {
   double move = 0;
   for (size_t i = 0; i < from.size(); ++i) move = std::max(move, (to[i].position - from[i].position).norm());
   return move;
@@ -59,7 +59,7 @@ TEST(PlantFromBake, FlatDomainsBendTowardsTheirFlatNormal) {
 
 TEST(PlantFromBake, StandsMotionlessUnderGravityExactlyAsModelled) {
   Plant plant = make_plant(test::synthetic_bake());
-  const std::vector<Motion> modelled = plant.motion;
+  const MotionArray modelled = plant.motion;
   PlantStepper stepper;
   for (int i = 0; i < 400; ++i) {  // 10 s
     const StepReport report = stepper.step(plant, {}, {}, {});
@@ -83,7 +83,7 @@ TEST(Standing, TellsAPlantThatStandsFromOneThatTopples) {
 
 TEST(PlantFromBake, ComesBackToItsModelledShapeAfterAGust) {
   Plant plant = make_plant(test::synthetic_bake());
-  const std::vector<Motion> modelled = plant.motion;
+  const MotionArray modelled = plant.motion;
   std::vector<Wrench> gust(plant.particles.size());
   for (size_t i = 0; i < gust.size(); ++i) gust[i].force = plant.particles[i].mass * Vec3(3, 0, 1);
   PlantStepper stepper;
@@ -104,7 +104,7 @@ TEST(PlantFromBake, PlacementMovesAndTurnsTheWholePlant) {
   const Quat turn(Eigen::AngleAxisd(0.7, Vec3::UnitY()));
   for (size_t i = 0; i < here.motion.size(); ++i)
     EXPECT_LT((turn * here.motion[i].position + placed.position - there.motion[i].position).norm(), 1e-12);
-  const std::vector<Motion> modelled = there.motion;
+  const MotionArray modelled = there.motion;
   PlantStepper stepper;
   for (int i = 0; i < 100; ++i) stepper.step(there, {}, {}, {});
   EXPECT_LT(largest_move(modelled, there.motion), 1e-6);

@@ -80,7 +80,7 @@ TEST(ShapeMatching, MaterialChangesNothing) {
 TEST(ShapeMatching, PlantAtRestStays) {
   Plant plant =
       make_plant(test::synthetic_bake({.branches = 3}), {.scheme = {.solver = Solver::ShapeMatching}});
-  const std::vector<Motion> start = plant.motion;
+  const MotionArray start = plant.motion;
   PlantStepper stepper;
   for (int i = 0; i < 200; ++i) ASSERT_TRUE(stepper.step(plant, {}, {}, kWeightless).finite);
   for (size_t i = 0; i < start.size(); ++i) {

@@ -100,8 +100,8 @@ TEST(Topology, AppendedBranchIsTheOneThatWasTakenAway) {
   Plant plant = swaying_tree(2);
   const BranchId last(plant.branches.size() - 1);
   const Branch branch = plant.branches[last.index()];
-  std::vector<Particle> particles;
-  std::vector<Motion> motion;
+  ParticleArray particles;
+  MotionArray motion;
   for (const ParticleId p : branch.particles) {
     particles.push_back(plant.particles[p.index()]);
     motion.push_back(plant.motion[p.index()]);

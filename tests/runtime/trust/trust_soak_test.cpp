@@ -38,10 +38,10 @@ TEST(Soak, AbusedGardenStaysFiniteBoundedAndOfOneSize) {
   const test::GardenReport& r = garden.report();
   const double grown = resident_megabytes() - settled;
   std::printf(
-      "%.0f s, %zu steps, %zu redone, %zu joints reseated, %zu cuts; top speed %.0f m/s, energy in rest at "
+      "%.0f s, %zu steps, %zu redone, %zu joints projected, %zu cuts; top speed %.0f m/s, energy in rest at "
       "most %.3f "
       "of its start; memory %.1f MB, grown by %.2f MB\n",
-      r.seconds, r.steps, r.redone, r.reseated, r.cuts, r.top_speed, r.top_growth, settled + grown, grown);
+      r.seconds, r.steps, r.redone, r.projected, r.cuts, r.top_speed, r.top_growth, settled + grown, grown);
   EXPECT_EQ(r.lost, 0u);
   EXPECT_GT(r.redone, 0u) << "the abuse is real";
   EXPECT_GT(r.cuts, 0u);

@@ -196,7 +196,7 @@ TEST_F(BreakingWorld, OldNamesInSceneFilesMeanWhatTheyDid) {
     const Scene scene = read(old);
     ASSERT_EQ(scene.impulses.size(), 1u);
     EXPECT_EQ(scene.impulses[0].velocity, Vec3(1, 0, 0));
-    EXPECT_EQ(scene.obstacles.at(0).contact_material.elasticity, 0.5);
+    EXPECT_EQ(scene.obstacles.at(0).contact_material.restitution, 0.5);
     EXPECT_EQ(scene.detached.roots_hold, 7);
   }
 }

@@ -46,7 +46,7 @@ void AbusedGarden::spell() {
   report_ = {};
   for (const Victim& victim : victims_) {
     const GardenReport& r = victim.report;
-    report_.steps += r.steps, report_.redone += r.redone, report_.reseated += r.reseated;
+    report_.steps += r.steps, report_.redone += r.redone, report_.projected += r.projected;
     report_.lost += r.lost, report_.cuts += r.cuts, report_.spells += r.spells;
     report_.seconds = std::max(report_.seconds, r.seconds);
     report_.top_speed = std::max(report_.top_speed, r.top_speed);
@@ -137,7 +137,7 @@ void AbusedGarden::advance(Victim& v, double dt) {
   const auto look = [&](const Plant& plant, const StepReport& step) {
     ++v.report.steps;
     v.report.redone += step.redone > 0;
-    v.report.reseated += static_cast<size_t>(step.reseated);
+    v.report.projected += static_cast<size_t>(step.projected);
     v.report.lost += !step.finite;
     for (const Motion& m : plant.motion) {
       const double speed = m.velocity.norm();
@@ -147,9 +147,9 @@ void AbusedGarden::advance(Victim& v, double dt) {
           v.broken.empty())
         v.broken = fmt::format(
             "a particle of {} at {:.3g} m/s, abuse {}, after {:.2f} s, in a step of {:.2g} s that was "
-            "redone {} times, {} joints reseated",
+            "redone {} times, {} joints projected",
             plant.motion.size(), speed, static_cast<int>(v.abuse), v.report.seconds, dt, step.redone,
-            step.reseated);
+            step.projected);
     }
     if (!step.finite && v.broken.empty())
       v.broken = fmt::format("a step was lost after {:.2f} s", v.report.seconds);

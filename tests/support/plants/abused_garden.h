@@ -11,7 +11,7 @@
 namespace liana::test {
 
 struct GardenReport {
-  size_t steps = 0, redone = 0, reseated = 0, lost = 0, cuts = 0, spells = 0;
+  size_t steps = 0, redone = 0, projected = 0, lost = 0, cuts = 0, spells = 0;
   double seconds = 0;     ///< simulated
   double top_speed = 0;   ///< m/s
   double top_growth = 0;  ///< of the energy in a quiet spell, over what it began with

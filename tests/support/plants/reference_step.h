@@ -27,7 +27,7 @@ class ReferenceStepper {
 
   TreeSolver solver_;
   std::vector<BodyPose> pose_;  // at the moment where forces are balanced, between two substeps
-  std::vector<Motion> next_;
+  MotionArray next_;
   double gap_ = 0;
 };
 

@@ -181,6 +181,24 @@ inline void predict(const StepView& view, size_t begin, size_t end) {
   }
 }
 
+struct JointL {
+  Lanes half_length, d_K;
+  Vec3L on_parent, on_self, C_s, C_b, rest_force, rest_moment;
+  QuatL rest;
+};
+[[gnu::always_inline]] inline JointL get_joint(const Rows<const double>& particle) {
+  JointL j;
+  Lanes skip, skip2, skip3;
+  particle.get(0, skip, j.half_length, skip2, skip3);
+  particle.get(8, skip, j.d_K, j.on_parent.x, j.on_parent.y);
+  particle.get(12, j.on_parent.z, j.on_self.x, j.on_self.y, j.on_self.z);
+  particle.get(16, j.rest.v.x, j.rest.v.y, j.rest.v.z, j.rest.w);
+  particle.get(20, j.C_s.x, j.C_s.y, j.C_s.z, j.C_b.x);
+  particle.get(24, j.C_b.y, j.C_b.z, j.rest_force.x, j.rest_force.y);
+  particle.get(28, j.rest_force.z, j.rest_moment.x, j.rest_moment.y, j.rest_moment.z);
+  return j;
+}
+
 // What each joint exerts, and how the solve sees it.
 inline void assemble(const StepView& view, size_t begin, size_t end) {
   for (size_t i = begin; i < end; ++i) {
@@ -189,17 +207,8 @@ inline void assemble(const StepView& view, size_t begin, size_t end) {
     const Fetch next(view, i + view.ahead), near(view, i + kNearRecord);
     const PoseL child = get_pose({view.pose, kPoseStride, pack.slot});
     const PoseL parent = get_pose({view.pose, kPoseStride, pack.parent});
-    const Rows<const double> particle(view.particle, kParticleStride, pack.self);
-    Lanes half_length, d_K, skip, skip2, skip3;
-    Vec3L on_parent, on_self, C_s, C_b, rest_force, rest_moment;
-    QuatL rest;
-    particle.get(0, skip, half_length, skip2, skip3);
-    particle.get(8, skip, d_K, on_parent.x, on_parent.y);
-    particle.get(12, on_parent.z, on_self.x, on_self.y, on_self.z);
-    particle.get(16, rest.v.x, rest.v.y, rest.v.z, rest.w);
-    particle.get(20, C_s.x, C_s.y, C_s.z, C_b.x);
-    particle.get(24, C_b.y, C_b.z, rest_force.x, rest_force.y);
-    particle.get(28, rest_force.z, rest_moment.x, rest_moment.y, rest_moment.z);
+    const auto [half_length, d_K, on_parent, on_self, C_s, C_b, rest_force, rest_moment, rest] =
+        get_joint({view.particle, kParticleStride, pack.self});
     next.particle(0), near.record_to_write(0);
 
     const QuatL frame = parent.orientation * rest;
@@ -303,23 +312,37 @@ inline void take_rank(InertiaL& A, Vec3L& force, Vec3L& moment, const Vec3L& ut,
   moment = moment - s * ur;
 }
 
+[[gnu::always_inline]] inline void get_block(const Rows<double>& rows, InertiaL& A, Vec3L& force,
+                                             Vec3L& moment) {
+  Lanes pad;
+  rows.get(0, A.P[0], A.P[1], A.P[2], A.P[3]);
+  rows.get(4, A.P[4], A.P[5], A.Q[0][0], A.Q[0][1]);
+  rows.get(8, A.Q[0][2], A.R[0], A.Q[1][0], A.Q[1][1]);
+  rows.get(12, A.Q[1][2], A.R[1], A.R[2], A.Q[2][0]);
+  rows.get(16, A.Q[2][1], A.Q[2][2], A.R[3], A.R[4]);
+  rows.get(20, A.R[5], force.x, force.y, force.z);
+  rows.get(24, moment.x, moment.y, moment.z, pad);
+}
+[[gnu::always_inline]] inline void add_block(const Rows<double>& rows, int lanes, const InertiaL& A,
+                                             const Vec3L& force, const Vec3L& moment) {
+  rows.add(0, lanes, A.P[0], A.P[1], A.P[2], A.P[3]);
+  rows.add(4, lanes, A.P[4], A.P[5], A.Q[0][0], A.Q[0][1]);
+  rows.add(8, lanes, A.Q[0][2], A.R[0], A.Q[1][0], A.Q[1][1]);
+  rows.add(12, lanes, A.Q[1][2], A.R[1], A.R[2], A.Q[2][0]);
+  rows.add(16, lanes, A.Q[2][1], A.Q[2][2], A.R[3], A.R[4]);
+  rows.add(20, lanes, A.R[5], force.x, force.y, force.z);
+  rows.add(24, lanes, moment.x, moment.y, moment.z, all(0));
+}
+
 // Leaves to root: every pack out of the system, its inertia and load passed on to its parents.
 inline void factor(const StepView& view, size_t begin, size_t end) {
   for (size_t i = begin; i < end; ++i) {
     const Pack& pack = view.packs[i];
     double* record = view.record + i * (4 * kRecordLanes);
     const Fetch next(view, i + view.ahead);
-    const Rows<double> own(view.block, kBlockStride, pack.slot);
     InertiaL A;
     Vec3L force, moment;
-    Lanes pad;
-    own.get(0, A.P[0], A.P[1], A.P[2], A.P[3]);
-    own.get(4, A.P[4], A.P[5], A.Q[0][0], A.Q[0][1]);
-    own.get(8, A.Q[0][2], A.R[0], A.Q[1][0], A.Q[1][1]);
-    own.get(12, A.Q[1][2], A.R[1], A.R[2], A.Q[2][0]);
-    own.get(16, A.Q[2][1], A.Q[2][2], A.R[3], A.R[4]);
-    own.get(20, A.R[5], force.x, force.y, force.z);
-    own.get(24, moment.x, moment.y, moment.z, pad);
+    get_block({view.block, kBlockStride, pack.slot}, A, force, moment);
 
     const Vec3L r_c = load3(record + 4 * kLeverChild), r_p = load3(record + 4 * kLeverParent);
     shift(A, r_c);
@@ -356,15 +379,7 @@ inline void factor(const StepView& view, size_t begin, size_t end) {
     shift(A, -r_p);
     moment = moment + cross(r_p, force);
 
-    const int lanes = static_cast<int>(pack.count);
-    const Rows<double> up(view.block, kBlockStride, pack.up);
-    up.add(0, lanes, A.P[0], A.P[1], A.P[2], A.P[3]);
-    up.add(4, lanes, A.P[4], A.P[5], A.Q[0][0], A.Q[0][1]);
-    up.add(8, lanes, A.Q[0][2], A.R[0], A.Q[1][0], A.Q[1][1]);
-    up.add(12, lanes, A.Q[1][2], A.R[1], A.R[2], A.Q[2][0]);
-    up.add(16, lanes, A.Q[2][1], A.Q[2][2], A.R[3], A.R[4]);
-    up.add(20, lanes, A.R[5], force.x, force.y, force.z);
-    up.add(24, lanes, moment.x, moment.y, moment.z, all(0));
+    add_block({view.block, kBlockStride, pack.up}, static_cast<int>(pack.count), A, force, moment);
   }
 }
 

@@ -7,8 +7,8 @@
 
 namespace liana {
 
-/// One particle as the other meets it.
-struct Shape {
+/// One particle as others meet it.
+struct Proxy {
   const Particle& particle;
   const Motion& motion;
   bool blade;
@@ -16,7 +16,7 @@ struct Shape {
 
 /// The same in single precision, for a first look at many.
 struct Outline {
-  Outline(const Shape& shape);
+  Outline(const Proxy& proxy);
   Eigen::Vector3f half_box() const;  ///< along the axes of the world, m
   /// True if a quick look shows more than `gap` (m) between them; never if it is less.
   bool apart(const Outline& other, float gap) const;
@@ -30,7 +30,7 @@ struct Outline {
   float reach(const Eigen::Vector3f& n) const;
 };
 
-struct Meeting {
+struct ContactGeometry {
   Vec3 normal;        ///< unit, from b to a
   double gap;         ///< m; < 0 while they overlap
   double soft;        ///< m: deeper than that they resist harder than lightly
@@ -42,6 +42,6 @@ struct Meeting {
 /// side: the normal when they met last, or null. Whoever has passed the other since counts as overlapping, to
 /// come out on the side that it came from; but what is deeper in a blade than a quarter of its width is let
 /// go. far: m; beyond it a gap need not be exact.
-Meeting meet(const Shape& a, const Shape& b, const Vec3* side, double far);
+ContactGeometry narrow_phase(const Proxy& a, const Proxy& b, const Vec3* side, double far);
 
 }  // namespace liana

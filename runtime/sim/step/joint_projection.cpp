@@ -1,4 +1,4 @@
-#include "runtime/sim/step/reseat.h"
+#include "runtime/sim/step/joint_projection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace liana {
 namespace {
 
-double kinetic_energy(const Plant& plant, const std::vector<Motion>& motion) {
+double kinetic_energy(const Plant& plant, std::span<const Motion> motion) {
   double sum = 0;
   for (size_t i = 0; i < plant.particles.size(); ++i) {
     const Particle& particle = plant.particles[i];
@@ -21,7 +21,7 @@ double kinetic_energy(const Plant& plant, const std::vector<Motion>& motion) {
 
 }  // namespace
 
-int reseat(Plant& plant, const std::vector<Motion>& start, double gap_limit) {
+int project_joints(Plant& plant, std::span<const Motion> start, double gap_limit) {
   const double before = kinetic_energy(plant, start);
   int closed = 0;
   for (size_t i = 0; i < plant.particles.size(); ++i) {

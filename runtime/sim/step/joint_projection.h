@@ -1,5 +1,7 @@
-// The last net: joints that no substep kept together are closed by hand.
+// Joint projection, the last net: joints that no substep kept together are closed by moving their particles.
 #pragma once
+
+#include <span>
 
 #include "runtime/sim/model/plant.h"
 
@@ -9,6 +11,6 @@ namespace liana {
 /// unturned, to where the joint is closed, and takes the joint's velocity. All else keeps its place relative
 /// to its parent. The step gains no kinetic energy over its `start`; accelerations are forgotten. Returns how
 /// many joints were closed.
-int reseat(Plant& plant, const std::vector<Motion>& start, double gap_limit);
+int project_joints(Plant& plant, std::span<const Motion> start, double gap_limit);
 
 }  // namespace liana
