@@ -45,7 +45,7 @@ double geometric_voxel(const Mesh& mesh, double sheet);
 class SdfObstacle {
  public:
   /// Throws Error{Input} for an empty or non-finite mesh, and unless it is a sheet for an open or inside-out
-  /// one. Shells of one mesh must not overlap (use one obstacle for each, see shells.h).
+  /// one. Shells of one mesh must not overlap (use one obstacle for each, see pieces.h).
   explicit SdfObstacle(const Mesh& mesh, const SdfOptions& options = {});
 
   double distance(const Vec3& x) const { return sample(x).distance; }

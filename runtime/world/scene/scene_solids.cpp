@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "mesher/base/error.h"
-#include "runtime/obstacles/shells.h"
+#include "runtime/obstacles/pieces.h"
 
 namespace liana {
 namespace {
