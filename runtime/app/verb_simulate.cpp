@@ -131,10 +131,14 @@ void print_summary(const World& world, double total_seconds, double render_secon
   for (const std::string& note : world.notes()) fmt::print("note: {}\n", note);
 }
 
-int simulate(const SimulateArguments& arguments) {
+void require_writable_outputs(const SimulateArguments& arguments) {
   for (const fs::path& output :
        {arguments.png, arguments.mp4, arguments.glb, arguments.report, arguments.record})
     if (!output.empty()) require_writable_folder(output);
+}
+
+int simulate(const SimulateArguments& arguments) {
+  require_writable_outputs(arguments);
   const Stopwatch total;
   const Scene scene = load_scene(arguments.scene);
   World world(scene, arguments.threads);

@@ -73,17 +73,7 @@ TaperLaw taper_of(const SpeciesLaw& law, const std::string& group) {
   }
 }
 
-// Appends one domain as a chain, in the frame of the bake.
-void append_chain(Plant& plant, const Bake& bake, DomainId id, double spacing) {
-  const BakedDomain& domain = bake.domains[id.index()];
-  check(domain);
-  const Centreline line(domain, taper_of(bake.law, domain.group));
-  const size_t n = particle_count(domain, line, spacing);
-  const double h = line.length() / static_cast<double>(n);
-  double shares = 0;
-  for (size_t i = 0; i < n; ++i) shares += line.mass_share(h * i, h * (i + 1));
-  const double poisson = bake.law.default_material.poisson_ratio;
-
+BranchId append_branch_of(Plant& plant, const BakedDomain& domain, DomainId id) {
   Branch branch{.parent = domain.parent.valid() ? BranchId(domain.parent.index()) : BranchId(),
                 .kind = domain.kind,
                 .level = domain.level,
@@ -96,7 +86,21 @@ void append_chain(Plant& plant, const Bake& bake, DomainId id, double spacing) {
       branch.parent.valid() ? plant.branches[branch.parent.index()].lineage : plant_lineage(plant.name, 0),
       LineageKind::Branch, id.index());
   plant.branches.push_back(std::move(branch));
-  const BranchId self(id.index());
+  return BranchId(id.index());
+}
+
+// Appends one domain as a chain, in the frame of the bake.
+void append_chain(Plant& plant, const Bake& bake, DomainId id, double spacing) {
+  const BakedDomain& domain = bake.domains[id.index()];
+  check(domain);
+  const Centreline line(domain, taper_of(bake.law, domain.group));
+  const size_t n = particle_count(domain, line, spacing);
+  const double h = line.length() / static_cast<double>(n);
+  double shares = 0;
+  for (size_t i = 0; i < n; ++i) shares += line.mass_share(h * i, h * (i + 1));
+  const double poisson = bake.law.default_material.poisson_ratio;
+
+  const BranchId self = append_branch_of(plant, domain, id);
   double mass_left = domain.mass;
   for (size_t i = 0; i < n; ++i) {
     const double s0 = h * static_cast<double>(i), s1 = i + 1 == n ? line.length() : s0 + h;
