@@ -13,6 +13,9 @@
 #define TETLIBRARY
 #include <tetgen.h>
 
+// <assert.h> declares it only where assertions are on.
+extern "C" [[noreturn]] void __assert_fail(const char*, const char*, unsigned, const char*) noexcept;
+
 namespace liana {
 namespace {
 
