@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "runtime/obstacles/closed_mesh.h"
-#include "runtime/obstacles/triangle_tree.h"
+#include "runtime/obstacles/triangle_broad_phase.h"
 
 namespace liana {
 
@@ -39,7 +39,7 @@ class SurfaceQuery {
   bool is_convex(double size) const;
 
   ClosedMesh surface_;
-  TriangleTree tree_;
+  TriangleBroadPhase tree_;
   double half_sheet_;  // m
   bool convex_ = false;
 };

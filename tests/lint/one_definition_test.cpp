@@ -25,11 +25,13 @@ bool in_anonymous_namespace(const Tag& tag) {
   return tag.scope.find("__anon") != std::string::npos;
 }
 
-// Types anywhere but in a source file's anonymous namespace, and functions that headers define.
+// Operators are told apart by what they take. Types anywhere but in a source file's anonymous namespace, and
+// functions that headers define.
 TEST(OneDefinition, ANameIsDefinedInOneFile) {
   std::map<std::string, std::set<std::string>> files;
   for (const Tag& tag : code_tags())
-    if (is_header(tag) || (tag.is_type() && !in_anonymous_namespace(tag)))
+    if (tag.qualified().find("operator") == std::string::npos &&
+        (is_header(tag) || (tag.is_type() && !in_anonymous_namespace(tag))))
       files[name_of(tag)].insert(tag.file);
   for (const auto& [name, where] : files) {
     std::string list;

@@ -123,7 +123,7 @@ void BroadPhase::take_out_moved(std::span<const CachedContact> cache) {
 }
 
 void BroadPhase::offer(uint32_t a, uint32_t b) {
-  if (near_kin(a, b)) return;
+  if (filtered_out(a, b)) return;
   Pair pair{a, b, kNone};
   if (!known_.empty()) {
     const Known wanted{{bodies_[a].name, bodies_[b].name}, 0};
@@ -134,7 +134,7 @@ void BroadPhase::offer(uint32_t a, uint32_t b) {
 }
 
 // The collision filter.
-bool BroadPhase::near_kin(uint32_t a, uint32_t b) const {
+bool BroadPhase::filtered_out(uint32_t a, uint32_t b) const {
   const Body &x = bodies_[a], &y = bodies_[b];
   if (x.name.plant != y.name.plant) return false;
   const Kin &of_x = kin_[a], &of_y = kin_[b];

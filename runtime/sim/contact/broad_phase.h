@@ -15,8 +15,8 @@ struct BroadPhaseOptions {
   double list_steps = 6;  ///< steps at the present velocity that it allows for
 };
 
-/// One per world. The list holds every pair of particles whose boxes may overlap in a step, but for near kin:
-/// those that share a joint or nearly so, and blades with their own branch.
+/// One per world. The list holds every pair of particles whose boxes may overlap in a step, but for those
+/// that the collision filter takes out: that share a joint or nearly so, and blades with their own branch.
 class BroadPhase {
  public:
   struct Body {
@@ -83,7 +83,7 @@ class BroadPhase {
   void list_moved(std::span<const Plant* const> plants);
   void take_out_moved(std::span<const CachedContact> cache);
   void offer(uint32_t a, uint32_t b);
-  bool near_kin(uint32_t a, uint32_t b) const;
+  bool filtered_out(uint32_t a, uint32_t b) const;
 
   BroadPhaseOptions options_;
   AabbTree tree_;              // over listed_

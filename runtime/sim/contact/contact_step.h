@@ -44,6 +44,7 @@ class ContactStepper {
   void persist(Archive& a) {
     a(contacts_, stepper_);
     // not state: options_: set once
+    // not state: own_: working memory of one step
   }
 
  private:

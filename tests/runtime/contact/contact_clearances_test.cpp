@@ -56,7 +56,9 @@ TEST(Clearances, AGrowingPlantInWindMovesAsIfAllOfItWereLookedAt) {
   ClimberParameters parameters;
   parameters.first_shoots = 3;
   parameters.max_particles = 500;
-  ClimberScene one(parameters), all(parameters);
+  const uint64_t seed =
+      3;  // of the first five the one that touches the wall most: 409 springs, others 50 to 386
+  ClimberScene one(parameters, seed), all(parameters, seed);
   all.stepper = ContactStepper(kLooksAtAll);
   GustParameters gusts;
   gusts.mean = {4, 0, -8};  // leaves are blown against the wall

@@ -108,8 +108,9 @@ uint64_t world_hash() {
 // with and without AVX2, AVX-512 and fused operations, with every C library. After a change that is meant to
 // change the motion: put what the test prints here. Changed last when sin, exp and their like became our own
 // (mesher/base/fixed_math.h; before, it was that of glibc 2.36 on processors with FMA only), random draws and
-// hashes went by lineage, and siblings by their own order in the solve.
-constexpr uint64_t kGolden = 0x81b061b49affd253;
+// hashes went by lineage, siblings by their own order in the solve, and obstacles and plants got one contact
+// response (of the three hashes that one changed the world's alone).
+constexpr uint64_t kGolden = 0xa69dce558f515aa1;
 
 uint64_t bits_of_the_c_library() {
   uint64_t hash = 0;

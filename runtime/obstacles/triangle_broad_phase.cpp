@@ -1,4 +1,4 @@
-#include "runtime/obstacles/triangle_tree.h"
+#include "runtime/obstacles/triangle_broad_phase.h"
 
 #include <embree3/rtcore.h>
 
@@ -72,7 +72,7 @@ void visit_along(const RTCOccludedFunctionNArguments* arguments) {
 
 // Embree wants flush-to-zero for speed and sets it in its own build only; it stays unset in our threads, so
 // that our own arithmetic does not depend on whether a thread ever asked.
-struct TriangleTree::Embree {
+struct TriangleBroadPhase::Embree {
   Vec3 centre = Vec3::Zero();  // Embree sees positions relative to it: single precision loses less
   double size = 0;             // m, the diagonal
   RTCDevice device = nullptr;
@@ -109,13 +109,13 @@ struct TriangleTree::Embree {
   }
 };
 
-TriangleTree::TriangleTree(const Mesh& mesh, const char* device)
+TriangleBroadPhase::TriangleBroadPhase(const Mesh& mesh, const char* device)
     : embree_(std::make_unique<Embree>(mesh, device)) {}
-TriangleTree::~TriangleTree() = default;
-TriangleTree::TriangleTree(TriangleTree&&) noexcept = default;
-TriangleTree& TriangleTree::operator=(TriangleTree&&) noexcept = default;
+TriangleBroadPhase::~TriangleBroadPhase() = default;
+TriangleBroadPhase::TriangleBroadPhase(TriangleBroadPhase&&) noexcept = default;
+TriangleBroadPhase& TriangleBroadPhase::operator=(TriangleBroadPhase&&) noexcept = default;
 
-void TriangleTree::near(const Vec3& x, double radius, FunctionRef<double(uint32_t)> visit) const {
+void TriangleBroadPhase::near(const Vec3& x, double radius, FunctionRef<double(uint32_t)> visit) const {
   const Vec3 local = x - embree_->centre;
   Around around{visit, radius, kSlackByDistance * local.norm()};
   RTCPointQuery query;
@@ -129,7 +129,8 @@ void TriangleTree::near(const Vec3& x, double radius, FunctionRef<double(uint32_
   rtcPointQuery(embree_->scene, &query, &context, visit_near, &around);
 }
 
-bool TriangleTree::along(const Vec3& x, const Vec3& direction, FunctionRef<bool(uint32_t)> visit) const {
+bool TriangleBroadPhase::along(const Vec3& x, const Vec3& direction,
+                               FunctionRef<bool(uint32_t)> visit) const {
   // From nearby: what single precision loses grows with the way.
   const double before = std::max(0.0, direction.dot(embree_->centre - x) - embree_->size);
   const Vec3 local = x + before * direction - embree_->centre;

@@ -10,13 +10,13 @@ namespace liana {
 
 /// What is nearest or met, the caller finds in double precision: Embree's arithmetic differs between
 /// processors, so it only leaves out triangles that are surely not wanted. Safe to ask from several threads.
-class TriangleTree {
+class TriangleBroadPhase {
  public:
   /// device: Embree's own configuration, such as "isa=sse2". No answer depends on it.
-  TriangleTree(const Mesh& mesh, const char* device);
-  ~TriangleTree();
-  TriangleTree(TriangleTree&&) noexcept;
-  TriangleTree& operator=(TriangleTree&&) noexcept;
+  TriangleBroadPhase(const Mesh& mesh, const char* device);
+  ~TriangleBroadPhase();
+  TriangleBroadPhase(TriangleBroadPhase&&) noexcept;
+  TriangleBroadPhase& operator=(TriangleBroadPhase&&) noexcept;
 
   /// Calls visit(triangle) for all that may be no further than `radius` (m) from x; what it returns is the
   /// radius from then on, never a larger one.
