@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "runtime/app/scene/scene_preparation.h"
 #include "runtime/world/world.h"
 
 namespace liana {
@@ -68,7 +69,7 @@ int fit(int count, char** arguments) {
   fmt::print("| weight | value | scene | penetration, mm | overlap, mm | again | redone | closed | lost |\n");
   fmt::print("|---|---|---|---|---|---|---|---|---|\n");
   for (const char* name : {"fence", "wall", "moving_cubes"}) {
-    Scene scene = read_scene(fmt::format("data/scenes/{}.toml", name));
+    Scene scene = load_scene(fmt::format("data/scenes/{}.toml", name));
     print("none", 1, name, run(scene, {}, seconds, seeds));
     for (const Weight& weight : kWeights)
       for (const double factor : factors) {
